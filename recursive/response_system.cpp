@@ -8,9 +8,9 @@
 namespace elastocheck::recursive {
 namespace {
 
-// Load |W⁻¹ b μ| on the border b of held direction c in the last back-substitution, μ its multiplier
-// (saddle_point.hpp; system.solution and border() are scaled): a force on an idle mode, or the gap of
-// redundant constraints.
+// Load |W⁻¹ D⁻¹ b μ| on the border b of held direction c in the last back-substitution, b scaled by D
+// (border()), μ its multiplier (saddle_point.hpp): a force on an idle mode, or the gap of redundant
+// constraints.
 double border_load(const SaddlePoint<double>& system, int c) {
     const Held<double>& held = system.held;
     const double mu = system.solution[system.n + system.m + c];
@@ -33,7 +33,8 @@ double border_load(const SaddlePoint<double>& system, int c) {
 //   opening   size of the constraint residual and of the motion that would close it, for redundant
 //             constraints [m]
 //
-// `limit` is the rounding plus a share of the constraint error Φ of the state.
+// `limit` is round-off (guard::rounding) plus a share of the constraint error Φ of the state. As rows of
+// Φ are lengths or directions, the motion and Φ are divided by the lesser of 1 and L.
 Outcome check_border(SteppingState& s, CheckedDirections checked, double rounding) {
     const Held<double>& held = s.system.held;
     if (held.size() == 0 || checked == CheckedDirections::none) return Outcome::converged;

@@ -45,8 +45,8 @@ std::vector<int> directions(const std::vector<double>& x) {
     return direction;
 }
 
-// Value at x of a polygon through points in any order; NaN outside.
-double polygon(std::vector<std::pair<double, double>> points, double x) {
+// Value at x of the piecewise linear curve through points in any order; NaN outside.
+double piecewise_linear_value(std::vector<std::pair<double, double>> points, double x) {
     std::ranges::sort(points);
     for (std::size_t k = 0; k + 1 < points.size(); ++k) {
         const auto& [x_0, y_0] = points[k];
@@ -86,7 +86,7 @@ std::vector<Hysteresis> take_means(PointColumn& column, const std::vector<Place>
             std::vector<double> mean = column.values;
             for (std::size_t k = 0; k < points.size(); ++k) {
                 const double value = column.values[points[k]],
-                             other = polygon(sweeps[direction[k] > 0 ? 0 : 1], x[k]);
+                             other = piecewise_linear_value(sweeps[direction[k] > 0 ? 0 : 1], x[k]);
                 if (!std::isfinite(other)) continue;
                 ++loop.points;
                 mean[points[k]] = (value + other) / 2;

@@ -21,17 +21,17 @@ Table with_columns(const Table& table, const std::vector<std::string>& names) {
                  .notes = table.notes,
                  .detail = table.detail};
     for (const auto& name : names) {
-        const auto of = std::ranges::find(table.columns, name, &Column::name);
-        if (of == table.columns.end()) continue;
-        chosen.columns.push_back(*of);
-        if (of->digits == Digits::hidden) {
+        const auto column = std::ranges::find(table.columns, name, &Column::name);
+        if (column == table.columns.end()) continue;
+        chosen.columns.push_back(*column);
+        if (column->digits == Digits::hidden) {  // of texts
             chosen.columns.back().words = true;
             chosen.columns.back().digits = Digits::words;
         }
         chosen.columns.back().place = -1;
         for (std::size_t r = 0; r < table.rows.size(); ++r)
             chosen.rows[r].push_back(
-                table.rows[r][static_cast<std::size_t>(of - table.columns.begin())]);
+                table.rows[r][static_cast<std::size_t>(column - table.columns.begin())]);
     }
     return chosen;
 }

@@ -97,8 +97,8 @@ Table table(Table head, const std::vector<ColumnOf<S>>& columns, const auto& ran
     return head;
 }
 
-// The table with only these columns, in this order, all shown to readers, hidden ones as words. A name
-// that the table lacks is left out.
+// The table with only these columns, in this order, all shown to readers; a hidden one must be of texts.
+// A name that the table lacks is left out.
 Table with_columns(const Table& table, const std::vector<std::string>& names);
 
 // The table of rows that say their columns themselves, in a function Row::columns().

@@ -43,26 +43,27 @@ Table over_steps(const std::vector<StepRow>& levels, bool by_output, double Step
     return wide;
 }
 
-// `whose`: before the ids of its tables, "candidate_" for a candidate's.
+// `id_prefix`: of the ids of its tables, "candidate_" for a candidate.
 void add(Result& result, const Study& study, const std::vector<BranchAttribution>& attribution,
-         const std::string& whose) {
+         const std::string& id_prefix) {
     const auto outputs = study_rows(study);
     const auto steps = step_rows(study);
     const auto gaps = gap_rows(study.channels, attribution);
     const auto part = [&](const std::string& id, Table table, std::string caption) {
-        table.id = id.empty() ? "" : whose + id;
-        table.caption = (whose.empty() || caption.empty() ? "" : "the candidate, ") + caption;
+        table.id = id.empty() ? "" : id_prefix + id;
+        table.caption = (id_prefix.empty() || caption.empty() ? "" : "the candidate, ") + caption;
         result.tables.push_back(std::move(table));
     };
     for (const auto& branch : distinct(outputs, &StudyRow::branch)) {
         const auto levels = where(steps, &StepRow::branch, branch);
-        const auto found = where(outputs, &StudyRow::branch, branch);
+        const auto branch_rows = where(outputs, &StudyRow::branch, branch);
         for (const auto& reading : distinct(levels, &StepRow::reading)) {
             const std::string place = fmt::format("branch '{}' {}: ", branch, reading);
-            part("convergence", table_of(where(found, &StudyRow::reading, reading)),
+            part("convergence", table_of(where(branch_rows, &StudyRow::reading, reading)),
                  place +
-                     "order at which the largest step error over the branch falls, and what no "
-                     "step count removes");
+                     "order at which the largest step error over the branch falls, and the "
+                     "formulation "
+                     "gap, which no step count removes");
             part("",
                  over_steps(where(levels, &StepRow::reading, reading), true, &StepRow::largest, ""),
                  place + "step errors, largest over the branch, over the steps");
@@ -72,17 +73,17 @@ void add(Result& result, const Study& study, const std::vector<BranchAttribution
                 levels, [](const StepRow& row) { return std::isfinite(row.constraint_error); }))
             part("", over_steps(levels, false, &StepRow::constraint_error, "m"),
                  fmt::format("branch '{}': |Φ| at its end, eq. (31), over the steps", branch));
-        const auto made = where(gaps, &GapRow::branch, branch);
-        for (const auto& reading : distinct(made, &GapRow::reading))
-            part("attribution", table_of(where(made, &GapRow::reading, reading)),
+        const auto branch_gaps = where(gaps, &GapRow::branch, branch);
+        for (const auto& reading : distinct(branch_gaps, &GapRow::reading))
+            part("attribution", table_of(where(branch_gaps, &GapRow::reading, reading)),
                  fmt::format("branch '{}' {}: what the gap of the recursion is made of, whole = "
                              "lever + axis + load + rest",
                              branch, reading));
     }
     part("step_errors", table_of(steps), "");
-    result.charts.push_back({.id = whose + "step_errors",
+    result.charts.push_back({.id = id_prefix + "step_errors",
                              .title = "Step error, largest over the branch",
-                             .table = whose + "step_errors",
+                             .table = id_prefix + "step_errors",
                              .x = "steps",
                              .y = {"largest"},
                              .by = {"branch", "reading", "output", "method"},

@@ -23,10 +23,12 @@ struct Options {
 
 // Follows one branch from a = 0 to branch.to and returns record + 1 (or steps + 1) points. A point holds the
 // poses, |Φ| of eq. (31), and the joint wrenches, eq. (22): of λⁿ⁻¹ with the Jacobian of its solve in
-// methods without following forces (published, closed), else of λ with the current Jacobian.
+// methods whose stored forces do not follow the bodies (published, closed), else of λ with the
+// current Jacobian.
 //
 // The published method takes one factorisation per step, and one more where static loads or preloads require
-// λ⁻¹. `adaptive` and `series` choose their own steps and evaluate the recorded points between them.
+// λ of the start (λⁿ⁻¹ of the first step). `adaptive` and `series` choose their own steps and evaluate
+// the recorded points between them.
 //
 // The analysis of the model may be passed in and shared between branches and
 // threads; std::invalid_argument where it is of another model.

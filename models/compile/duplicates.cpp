@@ -11,12 +11,12 @@
 namespace elastocheck::reduce {
 namespace {
 
-bool same(double a, double b) { return are_near(a, b, as_drawn); }
+bool same(double a, double b) { return are_near(a, b, design_tolerance); }
 bool same(const Point& a, const Point& b) {
-    return a.body == b.body && are_near(a.s_local, b.s_local, as_drawn);
+    return a.body == b.body && are_near(a.s_local, b.s_local, design_tolerance);
 }
 bool same(const Direction& a, const Direction& b) {
-    return a.body == b.body && are_near(a.u_local, b.u_local, as_drawn);
+    return a.body == b.body && are_near(a.u_local, b.u_local, design_tolerance);
 }
 bool same_line(const Direction& a, const Direction& b) {
     return same(a, b) || same(a, {b.body, -b.u_local});

@@ -82,17 +82,18 @@ bool is_strained_at_design(const JointKind& joint, const Scene& scene) {
         overloaded{[](const CoincidentPoints&) { return false; },
                    [&](const PointInPlane& c) {
                        const Vector3 d = position(scene, c.i) - position(scene, c.j);
-                       return !are_near(direction(scene, c.normal_j).dot(d), c.offset, as_drawn);
+                       return !are_near(direction(scene, c.normal_j).dot(d), c.offset,
+                                        design_tolerance);
                    },
                    [](const PerpendicularDirections&) { return false; },
                    [&](const DistanceBetween& c) {
                        const double drawn = (position(scene, c.j) - position(scene, c.i)).norm();
-                       return !are_near(drawn, c.length, as_drawn * c.length);
+                       return !are_near(drawn, c.length, design_tolerance * c.length);
                    },
                    [&](const DirectionAtAngle& c) {
                        const Vector3 u = cos(c.angle) * direction(scene, c.y_j) -
                                          sin(c.angle) * direction(scene, c.j);
-                       return !are_near(direction(scene, c.i).dot(u), 0, as_drawn);
+                       return !are_near(direction(scene, c.i).dot(u), 0, design_tolerance);
                    }},
         rows.front());
 }
@@ -105,20 +106,20 @@ bool is_loaded_at_design(const ElasticKind& elastic, const Scene& scene) {
     if (points.size() == 2 && free_length != nullptr) {
         const double length = (position(scene, points[1]) - position(scene, points[0])).norm();
         const ScalarLaw* law = scalar_law(elastic, 0);
-        free = law != nullptr && is_free(*law, length - *free_length, as_drawn * length);
+        free = law != nullptr && is_free(*law, length - *free_length, design_tolerance * length);
     }
     std::vector<Marker> markers;
     each_member(elastic, [&](const Marker& marker) { markers.push_back(marker); });
     if (markers.size() == 2) {
         const auto origin = [&](const Marker& m) { return position(scene, {m.body, m.s_local}); };
-        free = (origin(markers[1]) - origin(markers[0])).norm() <= as_drawn &&
-               axes(markers[0]).angularDistance(axes(markers[1])) <= as_drawn;
+        free = (origin(markers[1]) - origin(markers[0])).norm() <= design_tolerance &&
+               axes(markers[0]).angularDistance(axes(markers[1])) <= design_tolerance;
     }
     Vector6 e = Vector6::Zero();
     each_member(elastic,
                 overloaded{[&](Deformation<const Vector6> undeformed) { e = -undeformed.value; },
                            [&](ForceAndMoment<const Vector6> w) { free &= w.value.isZero(0); }});
-    if (const auto* law = member<SpatialLaw>(elastic)) free &= is_free(*law, e, as_drawn);
+    if (const auto* law = member<SpatialLaw>(elastic)) free &= is_free(*law, e, design_tolerance);
     return !free;
 }
 

@@ -38,7 +38,7 @@ DrivenParts driven_parts(const Scene& scene);
 // ---- At the design position.
 
 // Tolerance for equality at the design position: of positions [m] and of components of unit vectors.
-inline constexpr double as_drawn = 1e-12;
+inline constexpr double design_tolerance = 1e-12;
 
 Pose design(const Scene& scene, BodyId body);
 Vector3 position(const Scene& scene, const Point& p);

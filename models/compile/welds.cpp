@@ -14,7 +14,9 @@ namespace elastocheck::reduce {
 namespace {
 
 bool is_as_drawn(const Fixed& s, const Scene& scene) {
-    const auto same = [&](const Vector3& a, const Vector3& b) { return are_near(a, b, as_drawn); };
+    const auto same = [&](const Vector3& a, const Vector3& b) {
+        return are_near(a, b, design_tolerance);
+    };
     return same(position(scene, s.i), position(scene, s.j)) &&
            same(direction(scene, s.x_i), direction(scene, s.x_j)) &&
            same(direction(scene, s.y_i), direction(scene, s.y_j));
@@ -95,8 +97,8 @@ struct ToRepresentative {
     }
 };
 
-// Whether a load acts on a body merged into ground, where it moves nothing; lists it as omitted then.
-bool acts_on_ground(Scene& scene, const Load& load, Sets& sets, const std::string& where) {
+// Lists a load on a body merged into ground, where it moves nothing, as omitted; returns whether it did.
+bool leave_out_if_on_ground(Scene& scene, const Load& load, Sets& sets, const std::string& where) {
     const BodyId body = body_of(load.kind);
     if (body == ground || sets.first(body) != ground) return false;
     leave_out(scene, named("load", load.name), named(scene, body) + " is welded to ground" + where);
@@ -129,12 +131,12 @@ void weld(Scene& scene) {
     }
 
     std::erase_if(scene.static_loads,
-                  [&](const Load& load) { return acts_on_ground(scene, load, sets, ""); });
+                  [&](const Load& load) { return leave_out_if_on_ground(scene, load, sets, ""); });
     for (Branch& branch : scene.branches)
         std::erase_if(branch.drivers, [&](const Driver& driver) {
             const Load* load = driven_load(driver.what);
             return load != nullptr &&
-                   acts_on_ground(scene, *load, sets, " (branch '" + branch.name + "')");
+                   leave_out_if_on_ground(scene, *load, sets, " (branch '" + branch.name + "')");
         });
     const ToRepresentative express{scene, sets};
     for (Joint& joint : scene.joints) each_member(joint.kind, express);

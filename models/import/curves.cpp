@@ -24,14 +24,14 @@ InterpolantDeviation deviation(const Rows& rows, const OtherInterpolant& other,
         points.push_back({x, f});
         largest = std::max(largest, std::abs(f));
     }
-    const Curve curve =
-        own == Interpolation::linear ? reader::polygon(points) : reader::interpolant(points);
+    const Curve curve = own == Interpolation::linear ? reader::piecewise_linear(points)
+                                                     : reader::interpolant(points);
     InterpolantDeviation worst{.largest_force = largest};
     for (std::size_t k = 0; k + 1 < rows.size(); ++k)
         for (int n = 1; n < samples; ++n) {
             const double t = (rows[k + 1].first - rows[k].first) * n / samples,
                          x = rows[k].first + t;
-            const auto& c = curve.pieces[k + 1];
+            const auto& c = curve.pieces[k + 1];  // pieces[0]: left of the rows
             const double force = std::abs(c[0] + t * (c[1] + t * (c[2] + t * c[3])) - other(k, x));
             if (force > worst.force) {
                 worst.force = force;

@@ -10,7 +10,8 @@ namespace elastocheck::importer {
 
 using Rows = std::vector<std::pair<double, double>>;  // deformation, force
 
-// Largest difference between two interpolants of the same rows, in units of the rows.
+// Largest difference between two interpolants of the same rows, in units of the rows; 0 unless both
+// ascend.
 struct InterpolantDeviation {
     double force = 0;          // absolute difference
     double at = 0;             // deformation at which it occurs

@@ -23,7 +23,7 @@ class ParsedScene {
     // Throws SceneError for a file that cannot be read or is not YAML.
     explicit ParsedScene(const std::filesystem::path& file);
 
-    // As read_whole() of the text. With `warnings` null the plausibility checks are left out. Throws
+    // As parse_scene_with_warnings() of the text. With `warnings` null the plausibility checks are left out. Throws
     // SceneError. Thread-safe.
     Scene read(std::span<const Setting> settings,
                std::vector<std::string>* warnings = nullptr) const;

@@ -39,8 +39,8 @@ struct SceneAndWarnings {
 using Folder = std::optional<std::filesystem::path>;
 
 // parse_scene() and read_scene() with the warnings.
-SceneAndWarnings read_whole(std::string_view text, const std::string& name,
-                            std::span<const Setting> settings, const Folder& folder);
+SceneAndWarnings parse_scene_with_warnings(std::string_view text, const std::string& name,
+                                           std::span<const Setting> settings, const Folder& folder);
 SceneAndWarnings read_scene_with_warnings(const std::filesystem::path& file,
                                           std::span<const Setting> settings);
 

@@ -400,8 +400,9 @@ std::vector<RequestedDefinition> ParsedScene::definitions(std::span<const Settin
     return requested_definitions({&tree, "", &name_, &numbers});
 }
 
-SceneAndWarnings read_whole(std::string_view text, const std::string& name,
-                            std::span<const Setting> settings, const Folder& folder) {
+SceneAndWarnings parse_scene_with_warnings(std::string_view text, const std::string& name,
+                                           std::span<const Setting> settings,
+                                           const Folder& folder) {
     SceneAndWarnings read;
     const ParsedScene parsed(text, name, folder);
     read.scene = parsed.read(settings, &read.warnings);
@@ -431,14 +432,14 @@ std::vector<RequestedDefinition> requested_definitions(const Cursor& scene) {
 
 SceneAndWarnings read_scene_with_warnings(const std::filesystem::path& file,
                                           std::span<const Setting> settings) {
-    return read_whole(text_of(file), file.string(), settings, file.parent_path());
+    return parse_scene_with_warnings(text_of(file), file.string(), settings, file.parent_path());
 }
 
 }  // namespace reader
 
 Scene parse_scene(std::string_view text, const std::string& name,
                   std::span<const Setting> settings) {
-    return reader::read_whole(text, name, settings, std::nullopt).scene;
+    return reader::parse_scene_with_warnings(text, name, settings, std::nullopt).scene;
 }
 
 Scene read_scene(const std::filesystem::path& file, std::span<const Setting> settings) {

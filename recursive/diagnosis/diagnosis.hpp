@@ -86,7 +86,7 @@ std::string listed(const std::vector<std::string>& names);
 std::string undecided(const Model& model, const Diagnosis& diagnosis);
 
 // Idle modes as text, one a line: "strut: rotation about ..., moves no output"; modes of the same
-// kind together: "both 'a' and 'b' spin about themselves, moves no output".
+// kind together: "both 'a' and 'b' rotate about their own axis, which moves no output".
 std::vector<std::string> describe_idle_modes(const Diagnosis& diagnosis);
 // The same in one line.
 std::string idle_modes(const Diagnosis& diagnosis);

@@ -10,8 +10,8 @@
 // Idle modes are motions that nothing resists at the unloaded design position. The border of (24)
 // holds them, and the other stability tests do not cover them. Under load the acting forces may
 // resist them (a pendulum under its weight) or make them unstable (a rod under axial compression, a
-// weight standing on a ball). With Z the idle modes that share bodies, orthonormal in W and in the
-// null space of Φ_q,
+// weight standing on a ball). With Z the idle modes that share bodies, orthonormal in |W x| (W: 1
+// for Δr, L for Δπ) and in the null space of Φ_q,
 //
 //   zᵀKz < 0, z in Z      the energy falls along z: the equilibrium is unstable
 //
@@ -41,8 +41,9 @@ StartStability start_stability(SteppingState& s);
 // `singular` if the start of the branch is unstable.
 Outcome check_start_stability(SteppingState& s, const StartStability& start);
 
-// Whether the parabola through log₂ |determinant| at the ends and the middle of a step, taken as
-// values, falls below half of the least of them or below 2 % of their range in between.
+// Whether |determinant| dips within a step, from its log₂ at the ends and the middle: the middle is
+// below half of both ends, or the parabola through the three determinants falls below half of the
+// least of them or below 2 % of their range.
 bool determinant_dips(double log_from, double log_middle, double log_to);
 
 // The lowest determinant found within a step, given its values at t = 0, ½ and 1, both ends

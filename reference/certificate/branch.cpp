@@ -226,10 +226,10 @@ std::vector<Values<Interval>> coefficients(const Problem& problem, const Piece& 
 }
 
 // |Y(s) F| ≤ Σ |Y₀ F_k| + |Y₁ F_k|, as |s| ≤ 1.
-VectorXd step(const std::vector<MatrixXd>& Y, const std::vector<Values<Interval>>& F) {
+VectorXd defect_bound(const std::vector<MatrixXd>& Y, const std::vector<Values<Interval>>& F) {
     VectorXd sum = VectorXd::Zero(Y.front().rows());
     for (const auto& part : F)
-        for (const MatrixXd& factor : Y) sum += step(factor, part);
+        for (const MatrixXd& factor : Y) sum += defect_bound(factor, part);
     return sum * (1 + 1e-14);
 }
 
@@ -243,9 +243,10 @@ struct RestAlong {
     double gamma = 0;
     VectorXd operator()(const VectorXd& r) const {
         VectorXd sum = VectorXd::Zero(r.size()), remainder = sum;
-        for (const MatrixXd& part : rest) sum += above(part, r);
-        for (const Split& part : J) remainder += above(part.R, r) + gamma * above(part.M, r);
-        return (sum + above(Y, remainder)) * (1 + 1e-13);
+        for (const MatrixXd& part : rest) sum += product_bound(part, r);
+        for (const Split& part : J)
+            remainder += product_bound(part.R, r) + gamma * product_bound(part.M, r);
+        return (sum + product_bound(Y, remainder)) * (1 + 1e-13);
     }
 };
 RestAlong rest_along(const std::vector<MatrixXd>& Y, std::vector<Split> J) {
@@ -270,7 +271,7 @@ RestAlong rest_along(const std::vector<MatrixXd>& Y, std::vector<Split> J) {
 }
 
 // The tube may use half of the tolerance; the rest is for the states themselves.
-bool within(const System& system, const VectorXd& r, const Tolerance& tolerance) {
+bool is_within(const System& system, const VectorXd& r, const Tolerance& tolerance) {
     for (int b = 0; b < system.bodies; ++b)
         if (!(r.segment<3>(system.pose(b)).norm() < 0.5 * tolerance.length &&
               2 * r.segment<4>(system.pose(b) + 3).norm() < 0.5 * tolerance.angle))
@@ -281,7 +282,7 @@ bool within(const System& system, const VectorXd& r, const Tolerance& tolerance)
 // r with `correction` + rest(r) < r, by fixed-point iteration; empty if none is found. The factors
 // 1.01 and 1.02 give the iteration some room above the fixed point; 1 + 1e-14 covers the rounding of
 // the sum.
-VectorXd tube(const VectorXd& correction, const RestAlong& rest) {
+VectorXd tube_radii(const VectorXd& correction, const RestAlong& rest) {
     constexpr double min_radius = 1e-20;
     constexpr int max_iterations = 30;
     VectorXd r = correction.cwiseMax(min_radius) * 1.01;
@@ -301,12 +302,12 @@ void enclose(const NodeSolver& solver, Node& node) {
     const Interval a = node.a;
     const Values<Interval> F = residual(problem, thin(node.y), a);
     MatrixXd Y = node.Y;
-    VectorXd trial_radii = (3 * step(Y, F)).cwiseMax(1e-19);
+    VectorXd trial_radii = (3 * defect_bound(Y, F)).cwiseMax(1e-19);
     for (int trial = 0; trial < 4 && node.box.size() == 0 && trial_radii.allFinite(); ++trial) {
         const auto J = evaluate(problem, box(node.y, trial_radii), a, Slopes::yes).J;
         const Contraction rest = contraction(Y, J);
         if (!rest.finite) return;
-        VectorXd r = passing(step(Y, F), rest);
+        VectorXd r = passing_radii(defect_bound(Y, F), rest);
         if (r.size() == 0)
             // at a corner, where the inverse at ỹ belongs to one side
             Y = inverse(factors(middle(J)));
@@ -323,8 +324,8 @@ bool prove(const NodeSolver& solver, Piece& piece, const MatrixXd& Y0, const Vec
     const Problem problem = solver.problem(VectorXd::Zero(solver.system.n()));
     constexpr int J_order = order<SlopesAlong>;
     const auto F = coefficients<order<Along>>(problem, piece);
-    const VectorXd correction = step({Y0}, F);
-    if (!correction.allFinite() || !within(solver.system, correction, tolerance)) return false;
+    const VectorXd correction = defect_bound({Y0}, F);
+    if (!correction.allFinite() || !is_within(solver.system, correction, tolerance)) return false;
     // Radii over which F' is evaluated; at least those of the tube to be proved.
     VectorXd trial_radii = (4 * correction).cwiseMax(min_radii).cwiseMax(1e-18);
     const auto slopes = [&](const Interval& S) {
@@ -340,8 +341,8 @@ bool prove(const NodeSolver& solver, Piece& piece, const MatrixXd& Y0, const Vec
             if (!J.back().finite) return false;
         }
         const std::vector<MatrixXd> Y{Y0, -product(Y0, J[1].M) * Y0};
-        piece.r = tube(step(Y, F).cwiseMax(min_radii), rest_along(Y, std::move(J)));
-        if (piece.r.size() == 0 || !within(solver.system, piece.r, tolerance)) return false;
+        piece.r = tube_radii(defect_bound(Y, F).cwiseMax(min_radii), rest_along(Y, std::move(J)));
+        if (piece.r.size() == 0 || !is_within(solver.system, piece.r, tolerance)) return false;
         const auto R = piece.r.segment(7 * solver.system.bodies, solver.system.rows).array();
         if (!(R < 0.5 * std::min(tolerance.force, tolerance.moment)).all()) return false;
         if ((piece.r.array() <= trial_radii.array()).all()) return true;
@@ -358,8 +359,8 @@ Interval range_along(const Piece& piece, Index i) {
 // Whether the piece crosses a knot of a separated curve.
 bool crosses_a_knot(const System& system, const Piece& piece) {
     for (std::size_t k = 0; k < system.separated.size(); ++k)
-        if (over_a_knot(std::get<Curve>(law_of(system, system.separated[k])),
-                        range_along(piece, system.deformation(k))))
+        if (spans_knot(std::get<Curve>(law_of(system, system.separated[k])),
+                       range_along(piece, system.deformation(k))))
             return true;
     return false;
 }
@@ -380,12 +381,13 @@ bool prove_over_knot(const NodeSolver& solver, Piece& piece, const VectorXd& min
         const auto J = slopes(trial_radii);
         const MatrixXd Y = inverse(factors(middle(J)));
         if (!Y.allFinite()) return false;
-        const VectorXd correction = step({Y}, F).cwiseMax(min_radii);
-        if (!correction.allFinite() || !within(solver.system, correction, tolerance)) return false;
+        const VectorXd correction = defect_bound({Y}, F).cwiseMax(min_radii);
+        if (!correction.allFinite() || !is_within(solver.system, correction, tolerance))
+            return false;
         const Contraction rest = contraction(Y, J);
         if (!rest.finite) return false;
-        const VectorXd r = passing(correction, rest);
-        if (r.size() == 0 || !within(solver.system, r, tolerance)) return false;
+        const VectorXd r = passing_radii(correction, rest);
+        if (r.size() == 0 || !is_within(solver.system, r, tolerance)) return false;
         if ((r.array() <= trial_radii.array()).all()) {
             piece.r = r;
             return true;
@@ -588,7 +590,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         knot_pieces = proved_piece.over_knot ? knot_pieces + 1 : 0;
         if (std::abs(h) > std::abs(range)) h = range;
     }
-    if (!within(tube.width, tolerance))
+    if (!is_within(tube.width, tolerance))
         return open(fmt::format(
             "a curve of equilibria is proved, but up to {} from the states, beyond the tolerance",
             as_text(tube.width)));

@@ -41,9 +41,10 @@ struct Box {
     VectorXd r;
     SparseRows<Interval> J;  // Jacobian over the box, or one somewhat larger
     Eigen::MatrixXd Y;       // not of a large system
-    Contraction rest;        // of Y and J; not of a large system
+    Contraction rest;        // r -> bound of |I - Y J| r; not of a large system
     bool sampled = false;    // J is over poses within `sample`
-    double alone = 0;        // of a large system: t of the large box without another equilibrium
+    // of a large system: t of the large box without another equilibrium
+    double uniqueness_size = 0;
 };
 // All origins within t L and all quaternions within t, or the radii r where these are larger.
 VectorXd poses_within(const System& system, double t, VectorXd r) {
@@ -61,13 +62,13 @@ VectorXd poses_within(const System& system, double t, VectorXd r) {
 // Jacobian: across the knot of a stop that differs from the inverse at ỹ. `least` keeps
 // r above 0, as the strict inequality needs.
 constexpr double sample = 1e-10;
-Box smallest(const Problem& problem, const Approximate& approximate, double a) {
+Box smallest_box(const Problem& problem, const Approximate& approximate, double a) {
     constexpr int trials = 8, iterations = 4;
     constexpr double least = 1e-20;
     const Values<Interval> F = residual(problem, thin(approximate.y), Interval(a));
     Box result;
     result.Y = inverse(approximate.J);
-    VectorXd defect = step(result.Y, F);
+    VectorXd defect = defect_bound(result.Y, F);
     if (!defect.allFinite()) return result;
     result.r = (1.5 * defect).cwiseMax(least);
     for (int trial = -1; trial < trials && !result.proved; ++trial) {
@@ -75,7 +76,7 @@ Box smallest(const Problem& problem, const Approximate& approximate, double a) {
         result.J = evaluate(problem, box(approximate.y, over), Interval(a), Slopes::yes).J;
         if (trial > 0) {
             result.Y = inverse(factors(middle(result.J)));
-            defect = step(result.Y, F);
+            defect = defect_bound(result.Y, F);
             if (!defect.allFinite()) return result;
         }
         const Contraction& rest = result.rest = contraction(result.Y, result.J);
@@ -92,7 +93,7 @@ Box smallest(const Problem& problem, const Approximate& approximate, double a) {
                 from = (1.01 * to).cwiseMax(least);
             }
         } else {
-            r = passing(defect, rest);
+            r = passing_radii(defect, rest);
         }
         if (r.size() > 0 && (r.array() <= result.r.array()).all()) {
             result.r = r;
@@ -114,7 +115,7 @@ Box smallest(const Problem& problem, const Approximate& approximate, double a) {
 // Smallest max_i (|I - Y S| v)_i / v_i found by power iteration, which starts at v and leaves its
 // last vector there: over a box of another size I - Y S is about a multiple of this one, so that v
 // is a good start for it too. Below 1 the box contracts; below `enough` the search ends.
-double shrinks(const Contraction& rest, VectorXd& v, double enough = 0.9) {
+double contraction_ratio(const Contraction& rest, VectorXd& v, double enough = 0.9) {
     constexpr int iterations = 40, at_least = 5;
     const VectorXd start = v;
     double least = std::numeric_limits<double>::infinity();
@@ -130,11 +131,11 @@ double shrinks(const Contraction& rest, VectorXd& v, double enough = 0.9) {
     return least;
 }
 
-// Jacobian over the box of origins within t L and quaternions within t of ỹ, and over the box of y*.
 struct Sizes {
-    const VectorXd& small;  // r of the box of y*
+    const VectorXd& small;  // r of the small box
     double t;
 };
+// Jacobian over poses within t of ỹ (origins within t L), reactions and μ within the small box.
 SparseRows<Interval> over_large_box(const Problem& problem, const VectorXd& centre, double a,
                                     const Sizes& sizes) {
     const System& system = problem.system;
@@ -150,19 +151,21 @@ SparseRows<Interval> over_large_box(const Problem& problem, const VectorXd& cent
 
 // Largest t found for which the box of origins within t L and quaternions within t of ỹ contracts;
 // 0 if none does. Y is the inverse at ỹ, and where that fails the inverse at the middle of the
-// Jacobian. The ratio of shrinks() grows about in proportion to t, from the sampled box on, so that
-// t aims at a ratio of 0.99.
-double alone(const Problem& problem, const VectorXd& centre, double a, const Box& smallest) {
+// Jacobian. contraction_ratio() grows about in proportion to t, from the sampled box on, so that t aims
+// at a ratio of 0.99.
+double uniqueness_size(const Problem& problem, const VectorXd& centre, double a,
+                       const Box& smallest) {
     const VectorXd& small = smallest.r;
     constexpr int trials = 8;
     constexpr double largest = 0.05, enough = 0.85, aim = 0.99, corner = 0.2;
     double t = 2e-3, proved_t = 0, failed_t = std::numeric_limits<double>::infinity();
     VectorXd v = poses_within(problem.system, t, small);
-    if (smallest.sampled) t = std::min(largest, aim * sample / shrinks(smallest.rest, v, 0));
+    if (smallest.sampled)
+        t = std::min(largest, aim * sample / contraction_ratio(smallest.rest, v, 0));
     for (int trial = 0; trial < trials; ++trial) {
         const SparseRows<Interval> J = over_large_box(problem, centre, a, {small, t});
-        double ratio = shrinks(contraction(smallest.Y, J), v);
-        if (!(ratio < 1)) ratio = shrinks(contraction(inverse(factors(middle(J))), J), v);
+        double ratio = contraction_ratio(contraction(smallest.Y, J), v);
+        if (!(ratio < 1)) ratio = contraction_ratio(contraction(inverse(factors(middle(J))), J), v);
         if (ratio < 1) {
             proved_t = std::max(proved_t, t);
             t = std::min({largest, t * aim / std::max(ratio, 1e-3), 0.95 * failed_t});
@@ -186,27 +189,29 @@ double alone(const Problem& problem, const VectorXd& centre, double a, const Box
 // Estimate of a radius that passes, from solutions with the factors alone, since |Y F| needs all
 // rows of Y: the solution for the middle of F, and the root mean square of solutions for its radii
 // with random signs.
-VectorXd foreseen(const Factors& factors, const Values<Interval>& F) {
+VectorXd estimated_radius(const Factors& factors, const Values<Interval>& F) {
     constexpr int samples = 8;
-    constexpr double larger = 256;
+    constexpr double safety_factor = 256;
     std::minstd_rand random;
     const auto sign = [&] { return random() % 2 == 0 ? 1. : -1.; };
     const Index n = factors.size();
     VectorXd f(n), squares = VectorXd::Zero(n);
     for (Index i = 0; i < n; ++i) f[i] = mid(F.E[static_cast<std::size_t>(i)]);
     for (int k = 0; k < samples; ++k) {
-        VectorXd lost(n), rho = F.laws.rho;
-        for (Index i = 0; i < n; ++i) lost[i] = sign() * rad(F.E[static_cast<std::size_t>(i)]);
+        VectorXd perturbation(n), rho = F.laws.rho;
+        for (Index i = 0; i < n; ++i)
+            perturbation[i] = sign() * rad(F.E[static_cast<std::size_t>(i)]);
         for (double& part : rho) part *= sign();
-        for (const auto& [row, column, action] : F.laws.D) lost[row] += mid(action) * rho[column];
-        squares += factors.solve(lost).cwiseAbs2();
+        for (const auto& [row, column, action] : F.laws.D)
+            perturbation[row] += mid(action) * rho[column];
+        squares += factors.solve(perturbation).cwiseAbs2();
     }
-    return larger * (factors.solve(f).cwiseAbs() + (squares / samples).cwiseSqrt());
+    return safety_factor * (factors.solve(f).cwiseAbs() + (squares / samples).cwiseSqrt());
 }
 
 // v > 0 for large boxes: 1 for each pose (L for its origin), and for the reactions and μ 1e-4 of
 // the largest slope of a balance, so that no unknown dominates |I - Y S| v < v.
-VectorXd alike(const System& system, const SparseMatrix& M, Index size) {
+VectorXd balanced_scale(const System& system, const SparseMatrix& M, Index size) {
     const Index poses = 7 * system.bodies;
     double stiffest = 0;
     for (Index column = 0; column < poses; ++column)
@@ -220,13 +225,13 @@ VectorXd alike(const System& system, const SparseMatrix& M, Index size) {
 
 // The smallest box and the large one in one pass over the rows of Y: the inequality for the first,
 // and of many larger boxes the largest that contracts.
-Box by_rows(const Problem& problem, const Approximate& approximate, double a) {
+Box boxes_by_rows(const Problem& problem, const Approximate& approximate, double a) {
     constexpr int trials = 5, larger_boxes = 14;
     constexpr double least = 1e-20, largest = 2e-3, shorter = 0.25;
     const VectorXd& centre = approximate.y;
     const Values<Interval> F = residual(problem, thin(centre), Interval(a));
     Box result;
-    result.r = foreseen(approximate.J, F).cwiseMax(least);
+    result.r = estimated_radius(approximate.J, F).cwiseMax(least);
     for (int trial = 0; trial < trials && result.r.allFinite(); ++trial) {
         result.J = evaluate(problem, box(centre, result.r), Interval(a), Slopes::yes).J;
         std::vector<Split> J{split(result.J)};
@@ -239,7 +244,7 @@ Box by_rows(const Problem& problem, const Approximate& approximate, double a) {
             J.push_back(recentred(over, J.front().M));
             sizes.push_back(t);
         }
-        const VectorXd v = alike(problem.system, J.front().M, problem.size());
+        const VectorXd v = balanced_scale(problem.system, J.front().M, problem.size());
         Eigen::MatrixXd r = v.replicate(1, std::ssize(J));
         r.col(0) = result.r;
         const OverRows rows = over_rows(approximate.J, F, J, r);
@@ -250,7 +255,8 @@ Box by_rows(const Problem& problem, const Approximate& approximate, double a) {
             continue;
         }
         for (std::size_t k = sizes.size(); k-- > 0;)
-            if (all_less(rows.rest.col(static_cast<Index>(k) + 1), v)) result.alone = sizes[k];
+            if (all_less(rows.rest.col(static_cast<Index>(k) + 1), v))
+                result.uniqueness_size = sizes[k];
         result.r = image.cwiseMax(least);
         result.proved = true;
         return result;
@@ -283,7 +289,7 @@ Extent unique_around(const StateAt& mapped, const VectorXd& y, double t) {
 //
 // and a y that violates this proves that there is none. The rows of Y are used for y: each isolates
 // one unknown, the last ones the load on an idle motion or the gap of redundant rows.
-bool none_within(const StateAt& mapped, const Tolerance& tolerance) {
+bool is_excluded(const StateAt& mapped, const Tolerance& tolerance) {
     const System& system = mapped.system;
     const double load = mapped.state.load;
     const Index n = system.n();
@@ -296,7 +302,7 @@ bool none_within(const StateAt& mapped, const Tolerance& tolerance) {
     const VectorXd delta = radii(mapped, tolerance);
     if (!delta.head(7 * system.bodies).allFinite()) return false;
     const auto around_state = box(mapped.z, delta);
-    if (delta.allFinite() && wrenches_apart(mapped, around_state, tolerance)) return true;
+    if (delta.allFinite() && has_wrench_apart(mapped, around_state, tolerance)) return true;
 
     VectorXd y = VectorXd::Zero(n + k);
     y.head(n) = mapped.z;
@@ -309,8 +315,8 @@ bool none_within(const StateAt& mapped, const Tolerance& tolerance) {
     const VectorXd epsilon = rounding_of_equations(system, mapped.z, load);
     VectorXd middle_of_E(n);
     for (Index i = 0; i < n; ++i) middle_of_E[i] = mid(E[static_cast<std::size_t>(i)]);
-    // The inequality for one y, in intervals.
-    const auto shows = [&](const auto& weights) {
+    // Whether y violates the inequality, in intervals.
+    const auto violates = [&](const auto& weights) {
         Interval left, right;
         std::vector<Interval> slopes(static_cast<std::size_t>(n));
         for (Index i = 0; i < n; ++i) {
@@ -333,7 +339,7 @@ bool none_within(const StateAt& mapped, const Tolerance& tolerance) {
         const VectorXd left = (Y * middle_of_E).cwiseAbs(),
                        right = product(Y, slopes_of_E).cwiseAbs() * finite_delta;
         for (Index row = 0; row < Y.rows(); ++row)
-            if (left[row] > 0.5 * right[row] && shows(Y.row(row))) return true;
+            if (left[row] > 0.5 * right[row] && violates(Y.row(row))) return true;
     }
     return false;
 }
@@ -364,7 +370,7 @@ std::string on_knots(const System& system, const std::vector<Interval>& z, const
     for (std::size_t e = 0; e < x.size(); ++e) {
         bool is_on_knot = false;
         each_curve(system.model->elastics[e].kind, [&](std::size_t k, const Curve& curve) {
-            is_on_knot |= bounded(x[e][k]) && over_a_knot(curve, x[e][k]);
+            is_on_knot |= is_bounded(x[e][k]) && spans_knot(curve, x[e][k]);
         });
         if (is_on_knot)
             names +=
@@ -395,11 +401,11 @@ std::optional<Certificate> by_known_box(const ProvedBox& known, const StateAt& m
     const auto y = box(known.y, known.r);
     Certificate certificate = known.certificate;
     certificate.error = distance(mapped, {y.begin(), y.begin() + mapped.system.n()});
-    if (within(certificate.error, tolerance)) {
-        certificate.unique = unique_around(mapped, known.y, known.alone);
+    if (is_within(certificate.error, tolerance)) {
+        certificate.unique = unique_around(mapped, known.y, known.uniqueness_size);
         return certificate;
     }
-    if (!none_within(mapped, tolerance)) return {};
+    if (!is_excluded(mapped, tolerance)) return {};
     return Certificate{.state = ProofState::excluded,
                        .detail = fmt::format("the nearest equilibrium found is {} away",
                                              as_text(certificate.error)),
@@ -433,10 +439,10 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
 
     if (approximate.settled && approximate.y.allFinite()) {
         const bool large = problem.size() > max_unknowns_of_curves;
-        const Box smallest_box = large ? by_rows(problem, approximate, state.load)
-                                       : smallest(problem, approximate, state.load);
-        if (smallest_box.proved) {
-            const VectorXd& r = smallest_box.r;
+        const Box small_box = large ? boxes_by_rows(problem, approximate, state.load)
+                                    : smallest_box(problem, approximate, state.load);
+        if (small_box.proved) {
+            const VectorXd& r = small_box.r;
             const auto enclosure = box(approximate.y, r);
             const std::vector<Interval> z(enclosure.begin(), enclosure.begin() + system.n());
             certificate.error = distance(mapped, z);
@@ -448,15 +454,16 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
             certificate.gap = held.gap;
             const bool balanced = border_check.sound && certificate.held <= tolerance.held &&
                                   certificate.gap <= tolerance.gap;
-            if (within(certificate.error, tolerance) && balanced) {
+            if (is_within(certificate.error, tolerance) && balanced) {
                 certificate.state = ProofState::proved;
-                const double t = large ? smallest_box.alone
-                                       : alone(problem, approximate.y, state.load, smallest_box);
+                const double t =
+                    large ? small_box.uniqueness_size
+                          : uniqueness_size(problem, approximate.y, state.load, small_box);
                 certificate.unique = unique_around(mapped, approximate.y, t);
                 certificate.stable =
-                    stable(problem, z, smallest_box.J) ||
-                    (smallest_box.sampled &&
-                     stable(problem, z, evaluate(problem, enclosure, a, Slopes::yes).J));
+                    is_stable(problem, z, small_box.J) ||
+                    (small_box.sampled &&
+                     is_stable(problem, z, evaluate(problem, enclosure, a, Slopes::yes).J));
                 certificate.detail = statement(system, problem.border, held, "state");
                 if (const auto knots = on_knots(system, z, a); !knots.empty())
                     say(certificate.detail,
@@ -470,7 +477,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
             }
         }
     }
-    if (none_within(mapped, tolerance)) {
+    if (is_excluded(mapped, tolerance)) {
         certificate.state = ProofState::excluded;
         if (std::isfinite(certificate.error.length))
             certificate.detail = fmt::format(
@@ -497,7 +504,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
         return open(
             "Krawczyk's operator contracts in no box: the stiffness is too close to singular for "
             "double precision, or a law ends here");
-    if (within(certificate.error, tolerance))
+    if (is_within(certificate.error, tolerance))
         return open(fmt::format(
             "a state is proved within {} that needs {:.2g} N or N·m on an idle motion and "
             "a gap of {:.2g} m or rad in redundant joints; allowed: {:.2g}, {:.2g}",
@@ -521,7 +528,8 @@ Certificate certify(const Model& model, const Branch& branch, const Equilibrium&
                     const Tolerance& tolerance, std::vector<ProvedBox>& known) {
     Certificate certificate = certify(make_system(model, branch), state, tolerance, known);
     if (certificate.state == ProofState::excluded || certificate.stable) return certificate;
-    // At the corner of a stiff stop the slopes inside the element vary too independently.
+    // At the corner of a stiff stop, intervals lose that the slopes of an element vary together
+    // (derivation.md, "Curves of laws").
     const System system = make_system(model, branch, Curves::separated);
     if (system.separated.empty()) return certificate;
     Certificate separated = certify(system, state, tolerance, known);

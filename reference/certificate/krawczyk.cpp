@@ -30,32 +30,34 @@ double gamma(Index p) {
 
 }  // namespace
 
-VectorXd above(const MatrixXd& A, const VectorXd& x) { return raised<VectorXd>(A * x, A.cols()); }
-MatrixXd above_each(const MatrixXd& A, const MatrixXd& x) {
+VectorXd product_bound(const MatrixXd& A, const VectorXd& x) {
+    return raised<VectorXd>(A * x, A.cols());
+}
+MatrixXd product_bounds(const MatrixXd& A, const MatrixXd& x) {
     return raised<MatrixXd>(A * x, A.cols());
 }
-VectorXd above(const SparseMatrix& A, const VectorXd& x) {
+VectorXd product_bound(const SparseMatrix& A, const VectorXd& x) {
     return raised<VectorXd>(A * x, A.cols());
 }
 
 Split split(const SparseRows<Interval>& J) {
-    Split of;
+    Split parts;
     const auto n = static_cast<Index>(J.start.size()) - 1;
     std::vector<Eigen::Triplet<double>> M, R;
     std::vector<Index> entries(static_cast<std::size_t>(n));  // of each column
     for (const auto& [row, column, entry] : J.entries) {
         if (is_zero(entry)) continue;
-        if (!bounded(entry)) return of;
+        if (!is_bounded(entry)) return parts;
         M.emplace_back(row, column, mid(entry));
         if (const double radius = rad(entry); radius > 0) R.emplace_back(row, column, radius);
         ++entries[static_cast<std::size_t>(column)];
     }
-    of.M.resize(n, n), of.R.resize(n, n);
-    of.M.setFromTriplets(M.begin(), M.end());
-    of.R.setFromTriplets(R.begin(), R.end());
-    of.gamma = gamma((n > 0 ? *std::ranges::max_element(entries) : 0) + 2);
-    of.finite = true;
-    return of;
+    parts.M.resize(n, n), parts.R.resize(n, n);
+    parts.M.setFromTriplets(M.begin(), M.end());
+    parts.R.setFromTriplets(R.begin(), R.end());
+    parts.gamma = gamma((n > 0 ? *std::ranges::max_element(entries) : 0) + 2);
+    parts.finite = true;
+    return parts;
 }
 
 MatrixXd product(const MatrixXd& Y, const SparseMatrix& M) {
@@ -78,23 +80,26 @@ MatrixXd rest_of(Index from, const MatrixXd& Y, const SparseMatrix& M) {
 }  // namespace
 
 Contraction contraction(const MatrixXd& inverse, const SparseRows<Interval>& J) {
-    Contraction of;
+    Contraction result;
     Split parts = split(J);
-    if (!parts.finite) return of;
-    of.rest = rest_of(0, inverse, parts.M);
-    of.Y = inverse.cwiseAbs();
-    of.M = parts.M.cwiseAbs();
-    of.R = std::move(parts.R);
-    of.gamma = parts.gamma;
-    of.finite = std::isfinite(of.rest.sum() + of.Y.sum() + of.R.sum());  // none is negative
-    return of;
+    if (!parts.finite) return result;
+    result.rest = rest_of(0, inverse, parts.M);
+    result.Y = inverse.cwiseAbs();
+    result.M = parts.M.cwiseAbs();
+    result.R = std::move(parts.R);
+    result.gamma = parts.gamma;
+    result.finite =
+        std::isfinite(result.rest.sum() + result.Y.sum() + result.R.sum());  // none is negative
+    return result;
 }
 
 VectorXd Contraction::operator()(const VectorXd& r) const {
-    return raised<VectorXd>(above(rest, r) + above(Y, above(R, r) + gamma * above(M, r)), 4);
+    return raised<VectorXd>(product_bound(rest, r) +
+                                product_bound(Y, product_bound(R, r) + gamma * product_bound(M, r)),
+                            4);
 }
 
-VectorXd passing(const VectorXd& first, const Contraction& rest) {
+VectorXd passing_radii(const VectorXd& first, const Contraction& rest) {
     constexpr double least = 1e-20;
     const Index n = first.size();
     const VectorXd covered = first.cwiseMax(least) * 1.05;
@@ -107,48 +112,53 @@ VectorXd passing(const VectorXd& first, const Contraction& rest) {
 
 namespace {
 
-// F as |Y F| uses it, |Y F| ≤ |Y f| + |Y D| ρ + |Y| lost: the middles f and D, the radii ρ of the
-// laws, and the other radii and rounding `lost`.
+// F as |Y F| uses it, |Y F| ≤ |Y f| + |Y D| ρ + |Y| uncertainty: the middles f and D, the radii ρ of the
+// laws, and the other radii with rounding as `uncertainty`.
 struct Parts {
-    VectorXd f, rho, lost;
+    VectorXd f, rho, uncertainty;
     SparseMatrix D;
     bool finite = false;
 };
 Parts parts_of(const Values<Interval>& F) {
     const auto n = static_cast<Index>(F.E.size());
     const Laws& laws = F.laws;
-    Parts of{VectorXd(n), laws.rho, VectorXd(n), SparseMatrix(n, laws.rho.size())};
+    Parts parts{VectorXd(n), laws.rho, VectorXd(n), SparseMatrix(n, laws.rho.size())};
     for (Index k = 0; k < n; ++k) {
         const Interval& entry = F.E[static_cast<std::size_t>(k)];
-        if (!bounded(entry)) return of;
-        of.f[k] = mid(entry);
-        of.lost[k] = rad(entry);
+        if (!is_bounded(entry)) return parts;
+        parts.f[k] = mid(entry);
+        parts.uncertainty[k] = rad(entry);
     }
     std::vector<Eigen::Triplet<double>> D, radius;
     for (const auto& [row, column, entry] : laws.D) {
-        if (!bounded(entry)) return of;
+        if (!is_bounded(entry)) return parts;
         D.emplace_back(row, column, mid(entry));
         radius.emplace_back(row, column, rad(entry));
     }
-    of.D.setFromTriplets(D.begin(), D.end());
-    SparseMatrix R(n, of.rho.size());
+    parts.D.setFromTriplets(D.begin(), D.end());
+    SparseMatrix R(n, parts.rho.size());
     R.setFromTriplets(radius.begin(), radius.end());
-    const SparseMatrix size = of.D.cwiseAbs();
-    of.lost = raised<VectorXd>(
-        of.lost + above(R, of.rho) + gamma(n + 2) * (of.f.cwiseAbs() + above(size, of.rho)), 4);
-    of.finite = true;
-    return of;
+    const SparseMatrix size = parts.D.cwiseAbs();
+    parts.uncertainty =
+        raised<VectorXd>(parts.uncertainty + product_bound(R, parts.rho) +
+                             gamma(n + 2) * (parts.f.cwiseAbs() + product_bound(size, parts.rho)),
+                         4);
+    parts.finite = true;
+    return parts;
 }
-VectorXd step(const MatrixXd& Y, const Parts& F) {
+VectorXd defect_bound(const MatrixXd& Y, const Parts& F) {
     if (!F.finite) return VectorXd::Constant(Y.rows(), std::numeric_limits<double>::infinity());
-    return raised<VectorXd>((Y * F.f).cwiseAbs() + above(product(Y, F.D).cwiseAbs(), F.rho) +
-                                above(Y.cwiseAbs(), F.lost),
+    return raised<VectorXd>((Y * F.f).cwiseAbs() +
+                                product_bound(product(Y, F.D).cwiseAbs(), F.rho) +
+                                product_bound(Y.cwiseAbs(), F.uncertainty),
                             4);
 }
 
 }  // namespace
 
-VectorXd step(const MatrixXd& Y, const Values<Interval>& F) { return step(Y, parts_of(F)); }
+VectorXd defect_bound(const MatrixXd& Y, const Values<Interval>& F) {
+    return defect_bound(Y, parts_of(F));
+}
 
 OverRows over_rows(const Factors& factors, const Values<Interval>& F, const std::vector<Split>& J,
                    const MatrixXd& r) {
@@ -157,26 +167,26 @@ OverRows over_rows(const Factors& factors, const Values<Interval>& F, const std:
     const Parts parts = parts_of(F);
     const SparseMatrix& M = J.front().M;
     const SparseMatrix size = M.cwiseAbs();
-    MatrixXd lost(n, r.cols());
+    MatrixXd uncertainty(n, r.cols());
     for (Index k = 0; k < r.cols(); ++k) {
         const SparseMatrix& R = J[static_cast<std::size_t>(k)].R;
-        lost.col(k) =
-            raised<VectorXd>(above(R, r.col(k)) + J.front().gamma * above(size, r.col(k)), 4);
+        uncertainty.col(k) = raised<VectorXd>(
+            product_bound(R, r.col(k)) + J.front().gamma * product_bound(size, r.col(k)), 4);
     }
     OverRows bounds{VectorXd(n), MatrixXd(n, r.cols())};
     for (Index from = 0; from < n; from += at_a_time) {
         const MatrixXd Y = factors.rows_of_inverse(from, std::min(at_a_time, n - from));
-        bounds.defect.segment(from, Y.rows()) = step(Y, parts);
+        bounds.defect.segment(from, Y.rows()) = defect_bound(Y, parts);
         bounds.rest.middleRows(from, Y.rows()) = raised<MatrixXd>(
-            above_each(rest_of(from, Y, M), r) + above_each(Y.cwiseAbs(), lost), 4);
+            product_bounds(rest_of(from, Y, M), r) + product_bounds(Y.cwiseAbs(), uncertainty), 4);
     }
     return bounds;
 }
 
-Split recentred(const Split& of, const SparseMatrix& M) {
-    Split moved = of;
-    const SparseMatrix distance = SparseMatrix(of.M - M).cwiseAbs();
-    moved.R = SparseMatrix(of.R + distance) * (1 + 1e-14);
+Split recentred(const Split& original, const SparseMatrix& M) {
+    Split moved = original;
+    const SparseMatrix distance = SparseMatrix(original.M - M).cwiseAbs();
+    moved.R = SparseMatrix(original.R + distance) * (1 + 1e-14);
     moved.M = M;
     return moved;
 }

@@ -23,9 +23,9 @@
 namespace elastocheck::reference::certificate {
 
 // Upper bound of A x, for A and x ≥ 0.
-Eigen::VectorXd above(const Eigen::MatrixXd& A, const Eigen::VectorXd& x);
-Eigen::MatrixXd above_each(const Eigen::MatrixXd& A, const Eigen::MatrixXd& x);
-Eigen::VectorXd above(const SparseMatrix& A, const Eigen::VectorXd& x);
+Eigen::VectorXd product_bound(const Eigen::MatrixXd& A, const Eigen::VectorXd& x);
+Eigen::MatrixXd product_bounds(const Eigen::MatrixXd& A, const Eigen::MatrixXd& x);
+Eigen::VectorXd product_bound(const SparseMatrix& A, const Eigen::VectorXd& x);
 
 // F' = M ± R, where most entries are zero.
 struct Split {
@@ -49,10 +49,10 @@ Contraction contraction(const Eigen::MatrixXd& Y, const SparseRows<Interval>& J)
 
 // An r with `first` + |I - Y F'| r < r, by solving the fixed-point equation: across the corner of a
 // stop r is many times `first`. Empty if none is found.
-Eigen::VectorXd passing(const Eigen::VectorXd& first, const Contraction& rest);
+Eigen::VectorXd passing_radii(const Eigen::VectorXd& first, const Contraction& rest);
 
 // Upper bound of |Y F|.
-Eigen::VectorXd step(const Eigen::MatrixXd& Y, const Values<Interval>& F);
+Eigen::VectorXd defect_bound(const Eigen::MatrixXd& Y, const Values<Interval>& F);
 
 // The terms of the inequality for a system too large to keep Y. Each row of the inequality needs
 // the same row of Y alone, which is solved for and discarded.
@@ -63,8 +63,8 @@ struct OverRows {
 // J [box]: over each box, all with the M of the first; r [n × boxes].
 OverRows over_rows(const Factors& factors, const Values<Interval>& F, const std::vector<Split>& J,
                    const Eigen::MatrixXd& r);
-// An interval matrix with the given middle M that contains `of`.
-Split recentred(const Split& of, const SparseMatrix& M);
+// An interval matrix with the given middle M that contains `original`.
+Split recentred(const Split& original, const SparseMatrix& M);
 
 inline bool all_less(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
     return (a.array() < b.array()).all();  // false for a NaN entry

@@ -50,8 +50,8 @@ struct CurvePoint {
     double slope() const { return Y(Y.rows() - 1, Y.cols() - 1); }  // da/dσ
 };
 CurvePoint point_on_curve(const Problem& problem) {
-    Approximate found = newton(problem, problem.y_t, 0);
-    return {std::move(found.y), inverse(found.J), found.settled};
+    Approximate point = newton(problem, problem.y_t, 0);
+    return {std::move(point.y), inverse(point.J), point.settled};
 }
 
 // Secant method for da/dσ = 0 (`slope`), steps in σ. The point and tangent of the
@@ -105,7 +105,7 @@ struct Segment {
 Segment segment(const Problem& problem, const VectorXd& y, const MatrixXd& Y, double delta) {
     Values<Interval> F = residual(problem, thin(y), Interval(0));
     F.E.back() += Interval(-delta, delta);
-    const VectorXd defect = step(Y, F);
+    const VectorXd defect = defect_bound(Y, F);
     Segment result;
     if (!defect.allFinite()) return result;
     // The box of a point (δ = 0) must fit into that of a segment, even where both are only
@@ -219,7 +219,7 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
         limit.to = maximum ? range_of_a.hi : std::min(lower_end->a.hi, upper_end->a.hi);
         const auto whole = box(top.y, curve.r);
         limit.error = distance(mapped, {whole.begin(), whole.begin() + system.n()});
-        if (within(limit.error, tolerance))
+        if (is_within(limit.error, tolerance))
             limit.state = ProofState::proved;
         else
             limit.detail =

@@ -12,9 +12,9 @@ namespace elastocheck::reference::certificate {
 // motion and redundant joint.
 struct ProvedBox {
     double a = 0;
-    bool separated = false;   // of the equations with separated curves
-    Eigen::VectorXd y, r;     // ỹ and r
-    double alone = 0;         // t of the large box without another equilibrium (certify.cpp)
+    bool separated = false;      // of the equations with separated curves
+    Eigen::VectorXd y, r;        // ỹ and r
+    double uniqueness_size = 0;  // t of the large box without another equilibrium (certify.cpp)
     Certificate certificate;  // `error` and `unique` are those of the state that it was proved for
 };
 

@@ -40,7 +40,7 @@ Sparse turned_row(const System& system, const std::vector<Interval>& z,
     for (const auto& [_, column, value] : J) {
         if (column >= 7 * system.bodies) continue;
         const BodyId body = column / 7;
-        auto at = std::ranges::find(by_body, body, [](const auto& of) { return of.first; });
+        auto at = std::ranges::find(by_body, body, [](const auto& entry) { return entry.first; });
         if (at == by_body.end()) at = by_body.insert(at, {body, {}});
         at->second[static_cast<std::size_t>(column % 7)] = value;
     }
@@ -63,7 +63,7 @@ Sparse turned_row(const System& system, const std::vector<Interval>& z,
 
 }  // namespace
 
-bool positive_definite(const SparseMatrix& M, const SparseMatrix& R) {
+bool is_positive_definite(const SparseMatrix& M, const SparseMatrix& R) {
     const Index n = M.rows();
     if (n == 0) return true;
     const VectorXd diagonal = M.diagonal();
@@ -82,13 +82,14 @@ bool positive_definite(const SparseMatrix& M, const SparseMatrix& R) {
         for (SparseMatrix::InnerIterator at(L, j); at; ++at) ++entries[at.row()];
     const double unit = std::numeric_limits<double>::epsilon(),
                  c = 1.01 * unit * (entries.maxCoeff() + 4) * (scaled.diagonal().sum() + 1);
-    const VectorXd C = above(radius, VectorXd::Ones(n));
+    const VectorXd C = product_bound(radius, VectorXd::Ones(n));
     for (Index k = 0; k < n; ++k) scaled.coeffRef(k, k) -= 1.01 * (C[k] + c);
     cholesky.factorize(scaled);
     return cholesky.info() == Eigen::Success;
 }
 
-bool stable(const Problem& problem, const std::vector<Interval>& z, const SparseRows<Interval>& J) {
+bool is_stable(const Problem& problem, const std::vector<Interval>& z,
+               const SparseRows<Interval>& J) {
     const System& system = problem.system;
     const Index n = 6 * system.bodies;
     const double length = power_of_two(system.length);
@@ -145,7 +146,7 @@ bool stable(const Problem& problem, const std::vector<Interval>& z, const Sparse
         for (const Sparse& row : excluded)
             add_square(sum_of_squares, power_of_two(rho * largest_entry), row);
         const Split sum = split(by_rows(sum_of_squares, static_cast<int>(n)));
-        if (sum.finite && positive_definite(sum.M, sum.R)) return true;
+        if (sum.finite && is_positive_definite(sum.M, sum.R)) return true;
         if (excluded.empty()) return false;
     }
     return false;

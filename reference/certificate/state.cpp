@@ -238,7 +238,8 @@ Extent distance(const StateAt& mapped, const std::vector<Interval>& z) {
     return largest;
 }
 
-bool wrenches_apart(const StateAt& mapped, const std::vector<Interval>& z, const Tolerance& near) {
+bool has_wrench_apart(const StateAt& mapped, const std::vector<Interval>& z,
+                      const Tolerance& near) {
     const auto joint_wrenches = wrenches(mapped.system, z, Interval(mapped.state.load));
     for (std::size_t joint = 0; joint < joint_wrenches.size(); ++joint) {
         const auto w = stored_wrench(mapped.state, joint);
@@ -250,7 +251,7 @@ bool wrenches_apart(const StateAt& mapped, const std::vector<Interval>& z, const
     return false;
 }
 
-bool within(const Extent& extent, const Tolerance& tolerance) {
+bool is_within(const Extent& extent, const Tolerance& tolerance) {
     return extent.length <= tolerance.length && extent.angle <= tolerance.angle &&
            extent.force <= tolerance.force && extent.moment <= tolerance.moment;
 }

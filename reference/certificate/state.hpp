@@ -28,9 +28,9 @@ Eigen::VectorXd radii(const StateAt& mapped, const Tolerance& near);
 Extent distance(const StateAt& mapped, const std::vector<Interval>& z);
 // Whether some joint wrench is farther from that of the state than `near` at every point of the
 // box.
-bool wrenches_apart(const StateAt& mapped, const std::vector<Interval>& z, const Tolerance& near);
+bool has_wrench_apart(const StateAt& mapped, const std::vector<Interval>& z, const Tolerance& near);
 
-bool within(const Extent& extent, const Tolerance& tolerance);
+bool is_within(const Extent& extent, const Tolerance& tolerance);
 std::string as_text(const Extent& extent);  // "1 mm, 2 deg, 3 N and 4 N·m"
 
 // Upper bounds of U μ (bordered.hpp), given those of |μ|: of the wrench that holds idle motions and

@@ -92,7 +92,7 @@ std::vector<Task> tasks(const GateOptions& options) {
     return tasks;
 }
 
-// Relative path from the baseline to the scene, maybe with folder names that are not valid text.
+// Relative path from the folder of the baseline to the scene. Throws FileError unless it is one line of UTF-8.
 std::string name_beside(const Task& task) {
     // Absolute, since relative() fails for a folder that does not exist yet.
     const fs::path folder = fs::absolute(task.baseline).parent_path();
@@ -164,11 +164,11 @@ void judge(const BaselineFile& was, const BaselineFile& is, const std::string& f
            GatedScene& scene) {
     const BuildDistance builds = distance(was.provenance, is.provenance);
     ToleranceClass kind = builds.kind;
-    scene.differs = builds.differs;
+    scene.class_reason = builds.differs;
     for (const auto wanted : compare::tolerance_classes)
         if (forced == name(wanted)) {
             kind = wanted;
-            scene.differs = "--class";
+            scene.class_reason = "--class";
         }
     scene.verdict = compare::judge(was.baseline, is.baseline.accepted, kind);
     scene.widened = compare::widened(was.baseline, kind);
@@ -261,7 +261,7 @@ int accept_scene(const Task& task, const GateOptions& options) {
             }
         is.baseline.limits = was->baseline.limits;
         judge(*was, is, name(ToleranceClass::same_build), scene);
-        scene.differs = "every change beyond rounding";
+        scene.class_reason = "every change beyond rounding";
         print(gate_table(scene));
         const bool over = std::ranges::any_of(scene.verdict.offences, &compare::Offence::of_limit);
         if (over) {

@@ -29,8 +29,8 @@ double number_in(std::string_view cell, const std::string& file, int line,
                     column, reader::quote(cell)));
 }
 
-double number_or_none(std::string_view cell, const std::string& file, int line,
-                      const std::string& column) {
+double number_or_infinity(std::string_view cell, const std::string& file, int line,
+                          const std::string& column) {
     double value = 0;
     const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
     if (error == std::errc{} && end == cell.data() + cell.size() && !std::isfinite(value))
@@ -38,9 +38,9 @@ double number_or_none(std::string_view cell, const std::string& file, int line,
     return number_in(cell, file, line, column);
 }
 
-void read_sheet(std::string_view csv, const std::string& file, std::size_t max_rows,
-                const std::function<void(const Cells&, int)>& head,
-                const std::function<void(const Cells&, int)>& row) {
+void read_csv_table(std::string_view csv, const std::string& file, std::size_t max_rows,
+                    const std::function<void(const Cells&, int)>& head,
+                    const std::function<void(const Cells&, int)>& row) {
     if (file.ends_with(".yaml") || file.ends_with(".yml"))
         fail_at(file, 0, "is YAML; expected a table, CSV with the names of its columns first");
     const reader::Sheet sheet = [&] {

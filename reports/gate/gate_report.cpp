@@ -116,8 +116,9 @@ std::string verdict_of(const std::vector<GatedScene>& scenes) {
 std::string verdict_of(const GatedScene& scene) { return verdict_of(std::vector{scene}); }
 
 std::string class_of(const GatedScene& scene) {
-    return scene.differs.empty() ? name(scene.verdict.kind)
-                                 : fmt::format("{} ({})", name(scene.verdict.kind), scene.differs);
+    return scene.class_reason.empty()
+               ? name(scene.verdict.kind)
+               : fmt::format("{} ({})", name(scene.verdict.kind), scene.class_reason);
 }
 
 std::string headline(const GatedScene& scene) {
@@ -323,7 +324,7 @@ json gate_document(const std::vector<GatedScene>& scenes, const Provenance& prov
                         {"baseline", scene.baseline_file},
                         {"verdict", verdict_of(scene)},
                         {"tolerance_class", name(scene.verdict.kind)},
-                        {"because", scene.differs},
+                        {"because", scene.class_reason},
                         {"widened", scene.widened},
                         {"last_acceptance", scene.reason},
                         {"compared", scene.verdict.compared},

@@ -18,7 +18,7 @@ struct GatedScene {
     std::string baseline_file;
     compare::Measurement accepted;         // content of the baseline; empty without one
     std::string reason;                    // of the last acceptance
-    std::string differs;                   // build differences that exclude the class same-build
+    std::string class_reason;              // why this class of tolerances; empty: same build
     std::vector<compare::Change> changed;  // numbers of the scene changed since the acceptance
     std::vector<std::string> widened;      // tolerances beyond the default ones of the class
     std::vector<std::string> notes;        // remarks that do not affect the verdict

@@ -62,7 +62,7 @@ OutputTable read_table(std::string_view csv, const std::string& file, const Name
     const auto head = [&](const Cells& cells, int line) {
         read_headings(cells, line, file, names, also_known, table);
     };
-    read_sheet(csv, file, max_measured_points, head, [&](const Cells& cells, int line) {
+    read_csv_table(csv, file, max_measured_points, head, [&](const Cells& cells, int line) {
         table.lines.push_back(line);
         for (std::size_t c = 0; c < cells.size(); ++c) {
             const Meaning& meaning = table.columns[c];
@@ -76,7 +76,7 @@ OutputTable read_table(std::string_view csv, const std::string& file, const Name
                 case MeaningKind::nothing: break;
                 case MeaningKind::parameter:
                 case MeaningKind::output: {
-                    const double read = (also_known == nullptr ? number_in : number_or_none)(
+                    const double read = (also_known == nullptr ? number_in : number_or_infinity)(
                         cells[c], file, line, meaning.name);
                     table.values[c].push_back(
                         std::isinf(read) ? INFINITY : read * meaning.factor + meaning.offset);

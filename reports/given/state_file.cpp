@@ -170,9 +170,9 @@ void read_rows(std::string_view csv, States& states) {
         if (cells.size() != headings.size())
             fail_at(file, line, "a column too many; states have " + reader::listed(headings));
     };
-    read_sheet(csv, file, max_measured_points * 10, head, [&](const Cells& cells, int line) {
+    read_csv_table(csv, file, max_measured_points * 10, head, [&](const Cells& cells, int line) {
         const auto number = [&](std::size_t k) {
-            const double value = number_or_none(cells[place[k]], file, line, headings[k]);
+            const double value = number_or_infinity(cells[place[k]], file, line, headings[k]);
             if (std::isnan(value)) fail_at(file, line, headings[k] + ": an empty cell");
             return value;
         };

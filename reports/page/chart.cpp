@@ -67,14 +67,14 @@ std::size_t place_in(const std::vector<std::string>& list, const std::string& wo
 std::pair<std::vector<DrawnCurve>, std::vector<DrawnCurve>> curves_in(const compare::Chart& chart,
                                                                       const Table& table) {
     std::vector<DrawnCurve> drawn, given;
-    const std::size_t of = place_of(table, chart.by[0]), whose = place_of(table, chart.by[1]);
+    const std::size_t legend = place_of(table, chart.by[0]), wheel = place_of(table, chart.by[1]);
     const auto numbers = chart_rows(chart, table);
     for (std::size_t r = 0; r < numbers.size(); ++r) {
-        const DrawnCurve like{std::get<std::string>(table.rows[r][of]),
-                              std::get<std::string>(table.rows[r][whose])};
-        auto& list = place_in(chart.rings, like.of) < chart.rings.size() ? given : drawn;
+        const DrawnCurve like{std::get<std::string>(table.rows[r][legend]),
+                              std::get<std::string>(table.rows[r][wheel])};
+        auto& list = place_in(chart.rings, like.legend) < chart.rings.size() ? given : drawn;
         auto curve = std::ranges::find_if(list, [&](const DrawnCurve& other) {
-            return other.of == like.of && other.whose == like.whose;
+            return other.legend == like.legend && other.wheel == like.wheel;
         });
         if (curve == list.end()) curve = list.insert(curve, like);
         const bool gap = !std::isfinite(numbers[r][0]) || !std::isfinite(numbers[r][1]);
@@ -88,8 +88,8 @@ Figure lines_of(const compare::Chart& chart, const Table& table) {
     using enum Series::Style;
     constexpr Colour case_colours[] = {vermilion, blue, green, purple, ochre, pink, slate, sky};
     const auto [drawn, given] = curves_in(chart, table);
-    const auto cases = compare::distinct(drawn, &DrawnCurve::of);
-    auto wheels = compare::distinct(drawn, &DrawnCurve::whose);
+    const auto cases = compare::distinct(drawn, &DrawnCurve::legend);
+    auto wheels = compare::distinct(drawn, &DrawnCurve::wheel);
     std::erase(wheels, "");
     const bool several = cases.size() > 1, by_wheel = drawn.size() > cases.size();
     const auto colour_of = [&](std::size_t k) { return case_colours[k % std::size(case_colours)]; };
@@ -105,10 +105,10 @@ Figure lines_of(const compare::Chart& chart, const Table& table) {
                           .style = w == 0 ? line : dashed,
                           .colour = several ? ink : colour_of(w)});
     for (std::size_t k = 0; k < cases.size(); ++k)
-        for (const auto& curve : compare::where(drawn, &DrawnCurve::of, cases[k])) {
-            const std::size_t w = place_in(wheels, curve.whose);
+        for (const auto& curve : compare::where(drawn, &DrawnCurve::legend, cases[k])) {
+            const std::size_t w = place_in(wheels, curve.wheel);
             const bool of_wheel = w < wheels.size(), second = by_wheel && of_wheel && w > 0;
-            Series series{.title = several ? curve.of : "",
+            Series series{.title = several ? curve.legend : "",
                           .style = several && k == 0 ? heavy : line,
                           .colour = colour_of(several  ? k
                                               : second ? w
@@ -118,17 +118,17 @@ Figure lines_of(const compare::Chart& chart, const Table& table) {
             if (several) series.keys.push_back(k);
             if (by_wheel && of_wheel) series.keys.push_back(sides + w);
             if (series.keys.empty()) series.keys = {0};
-            if (of_wheel) series.title += (several ? ", " : "") + curve.whose;
+            if (of_wheel) series.title += (several ? ", " : "") + curve.wheel;
             if (series.title.empty()) series.title = "full solution";
             figure.series.push_back(std::move(series));
         }
     for (const auto& curve : given) {
-        const bool first = curve.of == chart.rings.front();
-        Series series{.title = curve.of,
+        const bool first = curve.legend == chart.rings.front();
+        Series series{.title = curve.legend,
                       .style = rings,
                       .colour = first ? purple : green,
                       .mark = first ? 5 : 4};
-        const auto entry = std::ranges::find(legend, curve.of, &Series::title);
+        const auto entry = std::ranges::find(legend, curve.legend, &Series::title);
         series.keys = {static_cast<std::size_t>(entry - legend.begin())};
         if (entry == legend.end() && !legend.empty()) legend.push_back(series);
         series.rows = curve.rows;

@@ -88,9 +88,9 @@ Sweep sweep_of(const SceneAnalyses& scene, const ComparedBranch& branch) {
 
 namespace {
 
-// Whether every leg's curve has the abscissa of the branch and it is useful: with a travel below a
-// millimetre the branch does not lift the wheel.
-bool over_abscissa(const SceneAnalyses& scene, const ComparedBranch& branch) {
+// Whether the branch has an abscissa that is monotonic along every leg's curve. A travel below a
+// millimetre does not count: the branch does not lift the wheel.
+bool has_monotonic_abscissa(const SceneAnalyses& scene, const ComparedBranch& branch) {
     const auto c = static_cast<std::size_t>(branch.result->abscissa);
     if (branch.result->abscissa < 0) return false;
     if (scene.comparison.channels[c].name.ends_with("travel")) {
@@ -123,7 +123,7 @@ std::vector<Sweep> sweeps_of(const SceneAnalyses& scene) {
                 are_sides(scene.model, sweep.branches.front(), branch))
                 twin = &sweep;
         Sweep alone = sweep_of(scene, branch);
-        if (!over_abscissa(scene, branch)) alone.abscissa.clear();
+        if (!has_monotonic_abscissa(scene, branch)) alone.abscissa.clear();
         if (twin == nullptr) {
             sweeps.push_back(std::move(alone));
         } else {

@@ -74,10 +74,10 @@ struct SweepCurve {
     std::vector<std::pair<std::size_t, std::size_t>> order{};  // curve and point
 };
 
-// A curve of a figure: of a load case or a spring, "measured" or a candidate, and of a wheel, where it is of
-// one. A row is abscissa and ordinate; an empty row is a gap.
+// A curve of a figure. `legend`: a load case, a spring, "measured" or a candidate; `wheel`: its name, empty
+// for a curve of no wheel. A row is abscissa and ordinate; an empty row is a gap.
 struct DrawnCurve {
-    std::string of, whose{};
+    std::string legend, wheel{};
     std::vector<std::vector<double>> rows{};
 };
 

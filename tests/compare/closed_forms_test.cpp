@@ -245,7 +245,7 @@ branches: {{push: {{load: push, to: {8}, steps: 4}}}}
 // force F at the other. Both arms bend like cantilevers, the rod between them twists under F a:
 //
 //   w = F (2 a³/(3 E I) + a² b/(G J))
-TEST(AntiRollBar, RateIsTheTextbookSumOfCompliances) {
+TEST(AntiRollBar, RateIsTheInverseOfBendingPlusTorsionCompliance) {
     const double a = 0.2, b = 0.9;
     const double rate = 1 / (2 * a * a * a / (3 * EI_rod) + a * a * b / GJ_rod);  // 45 kN/m
     for (const int n : {3, 7, 21}) {

@@ -599,7 +599,7 @@ TEST(Definitions, OtherDefinitionInAColumnIsNamedWithSignUnitAndOffset) {
 }
 
 // A nearly constant column fits every curve with a small factor and an offset, so that it identifies none.
-TEST(Definitions, ColumnThatHardlyMovesIsNotExplainedByADefinitionAndAFactor) {
+TEST(Definitions, NearlyConstantColumnIsNotExplainedByAScaledDefinition) {
     ColumnWithReference b;
     for (int k = 0; k <= 20; ++k) {
         const double x = 0.1 * (k - 10);

@@ -28,7 +28,7 @@ void judge(const BaselineFile& was, const BaselineFile& is, compare::ToleranceCl
     scene.baseline_file = "fuzz.json";
     scene.accepted = was.baseline.accepted;
     scene.reason = was.baseline.reason;
-    scene.differs = distance(was.provenance, is.provenance).differs;
+    scene.class_reason = distance(was.provenance, is.provenance).differs;
     scene.verdict = compare::judge(was.baseline, is.baseline.accepted, kind);
     scene.changed = compare::changes(was.numbers, is.numbers);
     const std::vector all{scene};

@@ -215,7 +215,7 @@ TEST(GateReport, SummaryBeginsWithTheVerdictAndFoldsTheRest) {
 TEST(GateReport, SummaryStaysBelowOneMebibyte) {
     GatedScene scene = failed();
     scene.file = std::string(1000, '|');
-    scene.reason = scene.differs = std::string(1000, '&');
+    scene.reason = scene.class_reason = std::string(1000, '&');
     scene.notes.assign(50, scene.reason);
     std::vector<GatedScene> scenes(400, scene);  // two offences each
     scenes[0].verdict.offences.assign(1200, offence(2));

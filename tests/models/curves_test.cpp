@@ -79,7 +79,7 @@ TEST(Interpolant, IsContinuouslyDifferentiableAndMonotone) {
 
 TEST(Polygon, IsLinearBetweenThePointsAndBeyondThem) {
     for (const Points& points : tables()) {
-        const Curve curve = reader::polygon(points);
+        const Curve curve = reader::piecewise_linear(points);
         ASSERT_EQ(curve.knots.size(), points.size());
         ASSERT_EQ(curve.pieces.size(), points.size() + 1);
         for (std::size_t k = 0; k < points.size(); ++k) {

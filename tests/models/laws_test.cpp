@@ -70,7 +70,7 @@ std::string bushing_with(const std::string& fields) {
     return "bushings:\n  mount: {bodies: [arm, ground], at: p, " + fields + "}";
 }
 
-TEST(BushingFormulation, DefaultIsThatOfThePaper) {
+TEST(BushingFormulation, OmittedFieldsTakeTheDefaultAndEveryCombinationIsRead) {
     using Frame = Formulation::Frame;
     using Angles = Formulation::Angles;
     const auto read = [](const std::string& fields) {

@@ -335,7 +335,7 @@ TEST(Stiffness, MatrixIndefiniteInSiIsRejectedInAllUnits) {
         EXPECT_NO_THROW(parsed(bench_with(K, units))) << units.text;
 }
 
-TEST(Stiffness, IsSymmetricToTheLastBit) {
+TEST(Stiffness, MatrixSymmetricToRoundingIsReadAsExactlySymmetric) {
     Matrix6 K = 100 * Matrix6::Identity();
     K(0, 4) = 5;
     K(4, 0) = 5 * (1 + 9e-13);

@@ -230,7 +230,7 @@ TEST(SparseLU, FactorsAfterASingularMatrixAreCorrect) {
     }
 }
 
-TEST(SparseLU, SmallMatrixIsSolvedForAnySizeOfAnyPivot) {
+TEST(SparseLU, SolutionIsAccurateForADiagonalEntryOfAnyMagnitude) {
     Matrix<double> A(3, 3);
     A << 4, 1, 0, -1, 3, 1, 0, -1, 2;  // regular for any non-negative diagonal with one zero
     SparseLU<double> lu;

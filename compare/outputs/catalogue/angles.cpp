@@ -147,8 +147,8 @@ double roll_angle(const Subject& x) {
 double roll_moment(const Subject& x) {
     if (x.branch == nullptr) return nan;
     const Subject left = x.other_wheel(left_wheel(x.model)), right = x.other_wheel(1 - left.k);
-    const auto load = [&](const Subject& of) {
-        return wheel_load(x.model, *x.branch, *x.state, of.k);
+    const auto load = [&](const Subject& wheel) {
+        return wheel_load(x.model, *x.branch, *x.state, wheel.k);
     };
     const double difference = load(right) - load(left);
     return std::isfinite(difference)
@@ -159,12 +159,12 @@ double roll_moment(const Subject& x) {
 // ---- Positions: one entry per axis.
 
 void add_position(std::vector<Entry>& entries, Owner owner, const std::string& stem,
-                  const std::string& of, Point (*point)(const Wheel&),
+                  const std::string& noun, Point (*point)(const Wheel&),
                   std::array<Properties, 3> properties = {}) {
     for (int k = 0; k < 3; ++k) {
         const auto a = static_cast<std::size_t>(k);
         Entry entry{
-            owner, stem + "_" + axes[a], Unit::mm, "position of " + of + ", " + axis_words(k), "",
+            owner, stem + "_" + axes[a], Unit::mm, "position of " + noun + ", " + axis_words(k), "",
             {},    properties[a]};
         entry.axis = k;
         entry.point = point;

@@ -203,8 +203,8 @@ ChannelKind Channel::kind() const {
 }
 
 bool Channel::may_be_undefined() const {
-    const auto* of = std::get_if<Catalogued>(&reads);
-    return !undefined.empty() || (of != nullptr && of->entry->properties.may_be_undefined);
+    const auto* figure = std::get_if<Catalogued>(&reads);
+    return !undefined.empty() || (figure != nullptr && figure->entry->properties.may_be_undefined);
 }
 
 std::vector<int> Channel::joints() const {

@@ -18,17 +18,19 @@ struct ForceFigure {
     MeasuredChange measured;
     const char* stiffness = "";  // definition of a figure of MeasuredChange::displacement
     bool key = false, explained = false;
-    int live_rank = 0;  // rank on a live page under the first loading (LiveRank); 0: none
+    // LiveRank of one wheel without axle; + 1, + 2 for the loadings of an axle; 0: none
+    int live_rank = 0;
 };
 struct Loading {
-    const char* name;     // suffix of the name of the figure, after "@"
-    double other;         // load on the other wheel per unit load on this one, ground axes
-    const char* cause;    // the load in words
-    const char* sources;  // name of the loading at test rigs or in programs
+    const char* name;         // suffix of the name of the figure, after "@"
+    double other;             // load on the other wheel per unit load on this one, ground axes
+    const char* description;  // the load in words
+    const char* sources;      // name of the loading at test rigs or in programs
 };
 struct ForceTest {
-    int cause;    // wrench index of WheelResponse::jacked
-    double sign;  // sign of the load along its ground axis; 0: -side, towards the vehicle's middle
+    int wrench;  // index in WheelResponse::jacked
+    // sign of the load along its ground axis; 0: -side, a force to the middle of the vehicle, a moment to toe-in
+    double sign;
     const char* load;  // "braking force at the contact patch"
     Loading alone;
     std::vector<Loading> on_a_rig;
@@ -93,16 +95,16 @@ const std::vector<ForceTest>& force_tests() {
     return tests;
 }
 
-double value(const Subject& x, int cause, double sign, double other, MeasuredChange measured) {
+double value(const Subject& x, int wrench, double sign, double other, MeasuredChange measured) {
     const auto change_under_load_on = [&](std::size_t w) {
-        const auto& motions = x.response->jacked[w][static_cast<std::size_t>(cause)];
-        const PlacedPoint loaded_point = cause < first_moment         ? x.centre()
-                                         : cause == first_patch_force ? x.braked_patch()
-                                                                      : x.patch();
+        const auto& motions = x.response->jacked[w][static_cast<std::size_t>(wrench)];
+        const PlacedPoint loaded_point = wrench < first_moment         ? x.centre()
+                                         : wrench == first_patch_force ? x.braked_patch()
+                                                                       : x.patch();
         return measured == MeasuredChange::toe ? x.toe(motions)
                : measured == MeasuredChange::camber
                    ? x.camber(motions)
-                   : x.displacement(motions, loaded_point)[cause % 3];
+                   : x.displacement(motions, loaded_point)[wrench % 3];
     };
     const double alone = change_under_load_on(x.k);
     double sum = alone;
@@ -119,13 +121,13 @@ std::string definition(bool axle, const ForceTest& test, const Loading& loading,
     constexpr auto at_height = ", wheel centres held at their height";
     switch (figure.measured) {
         case MeasuredChange::toe:
-            return fmt::format("change of toe over {}{}{}; positive towards toe-in", loading.cause,
-                               axle && loading.other == 0 ? ", this wheel alone loaded" : "",
-                               at_height);
+            return fmt::format(
+                "change of toe over {}{}{}; positive towards toe-in", loading.description,
+                axle && loading.other == 0 ? ", this wheel alone loaded" : "", at_height);
         case MeasuredChange::camber:
             return fmt::format("change of camber {}; positive where the top leans out",
                                axle ? "in the same test"
-                               : test.cause >= first_moment && test.cause < first_patch_force
+                               : test.wrench >= first_moment && test.wrench < first_patch_force
                                    ? "over the same moment, likewise"
                                    : "over the same force, likewise");
         case MeasuredChange::displacement: break;
@@ -133,7 +135,8 @@ std::string definition(bool axle, const ForceTest& test, const Loading& loading,
     return std::string(figure.stiffness) + (axle ? " in the same test" : at_height);
 }
 
-// `position`: position of the loading among those of its owner; -1 for one wheel of an axle loaded alone.
+// `position`: 0 for a wheel without axle; 1, 2, ... for the loadings of an axle; -1 for one
+// wheel of an axle loaded alone.
 Entry entry(Owner owner, const ForceTest& test, const Loading& loading, const ForceFigure& figure,
             int position) {
     const bool axle = owner == Owner::wheel_of_axle, is_default = position >= 0;
@@ -146,8 +149,8 @@ Entry entry(Owner owner, const ForceTest& test, const Loading& loading, const Fo
         figure.unit,
         definition(axle, test, loading, figure),
         figure.measured == MeasuredChange::displacement ? "rigid: nothing gives" : "",
-        [cause = test.cause, sign = test.sign, other = loading.other, measured = figure.measured](
-            const Subject& x) { return value(x, cause, sign, other, measured); },
+        [wrench = test.wrench, sign = test.sign, other = loading.other, measured = figure.measured](
+            const Subject& x) { return value(x, wrench, sign, other, measured); },
         {.sources = loading.sources,
          .is_key_figure = is_default && figure.key,
          .explained = is_default && figure.explained && loading.other >= 0,

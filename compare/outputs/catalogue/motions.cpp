@@ -11,21 +11,21 @@ Motions weighted_sum(const std::vector<std::pair<double, const Motions*>>& terms
         }
     return total;
 }
-Motions axle_motions(const ResponsesByWheel& responses, const Subject& wheel, int cause,
+Motions axle_motions(const ResponsesByWheel& responses, const Subject& wheel, int wrench,
                      double other) {
     std::vector<std::pair<double, const Motions*>> terms;
     for (std::size_t w = 0; w < responses.size(); ++w)
         terms.emplace_back(w == wheel.k ? 1 : other,
-                           &responses[w][static_cast<std::size_t>(cause)]);
+                           &responses[w][static_cast<std::size_t>(wrench)]);
     return weighted_sum(terms);
 }
-const Motions& motions_at_fixed_height(const Subject& wheel, int cause) {
-    return wheel.response->jacked[wheel.k][static_cast<std::size_t>(cause)];
+const Motions& motions_at_fixed_height(const Subject& wheel, int wrench) {
+    return wheel.response->jacked[wheel.k][static_cast<std::size_t>(wrench)];
 }
-const Motions* motions_at_fixed_load(const Subject& wheel, int cause) {
+const Motions* motions_at_fixed_load(const Subject& wheel, int wrench) {
     return wheel.response->free.empty()
                ? nullptr
-               : &wheel.response->free[wheel.k][static_cast<std::size_t>(cause)];
+               : &wheel.response->free[wheel.k][static_cast<std::size_t>(wrench)];
 }
 double value_without_free_response(const Subject& wheel) {
     return wheel.response->nothing_resists ? undefined : nan;

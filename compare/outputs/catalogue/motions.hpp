@@ -19,15 +19,15 @@ using ResponsesByWheel = std::vector<std::array<Motions, wrench_count>>;
 
 // Σ weight · motions. Pre: at least one term, all for the same model.
 Motions weighted_sum(const std::vector<std::pair<double, const Motions*>>& terms);
-// Motions under one unit [N, N·m] of the wrench with index `cause` on `wheel`, and `other` units on each
+// Motions under one unit [N, N·m] of the wrench with index `wrench` on `wheel`, and `other` units on each
 // other wheel.
-Motions axle_motions(const ResponsesByWheel& responses, const Subject& wheel, int cause,
+Motions axle_motions(const ResponsesByWheel& responses, const Subject& wheel, int wrench,
                      double other);
-// Motions per unit [N, N·m] of the wrench with index `cause` on `wheel`, while jacks hold all wheel
+// Motions per unit [N, N·m] of the wrench with index `wrench` on `wheel`, while jacks hold all wheel
 // centres at their height.
-const Motions& motions_at_fixed_height(const Subject& wheel, int cause);
+const Motions& motions_at_fixed_height(const Subject& wheel, int wrench);
 // The same motions while the vertical load of each wheel stays constant. Null where nothing resists a wheel.
-const Motions* motions_at_fixed_load(const Subject& wheel, int cause);
+const Motions* motions_at_fixed_load(const Subject& wheel, int wrench);
 // Value of a figure that needs WheelResponse::free where that is missing: `undefined` where nothing
 // resists a wheel, NaN where the solver failed.
 double value_without_free_response(const Subject& wheel);

@@ -389,8 +389,8 @@ const Entry rate_definitions[] = {
           "alike",
           always_defined,
           [](const Subject& x) {
-              const auto by = heave_motions(x);
-              return ratio(x.toe(by), x.displacement(by, x.patch()).z(), max_distance);
+              const auto heave = heave_motions(x);
+              return ratio(x.toe(heave), x.displacement(heave, x.patch()).z(), max_distance);
           },
           {.sources = "deflection counted at the tyre"}),
     Entry(Owner::wheel_of_axle, "bump_steer@alone", Unit::deg_per_m,
@@ -549,8 +549,9 @@ const Entry further_rate_definitions[] = {
           "of the vehicle, the wheel loads unchanged and the wheels free to rise",
           unresisted,
           [](const Subject& x) {
-              const auto* by = motions_at_fixed_load(x, first_patch_force + 1);
-              return by == nullptr ? value_without_free_response(x) : inward(x) * x.toe(*by);
+              const auto* motions = motions_at_fixed_load(x, first_patch_force + 1);
+              return motions == nullptr ? value_without_free_response(x)
+                                        : inward(x) * x.toe(*motions);
           },
           {.sources = "programs whose wheels are free", .needs_free_response = true}),
     Entry(Owner::wheel_on_tyre, "lateral_force_steer@on_tyres", Unit::deg_per_kN,

@@ -119,8 +119,8 @@ double roll_stiffness(const Subject& x) {
     if (x.response->free.empty()) return value_without_free_response(x);
     if (x.response->tied) return undefined;
     const Subject left = x.other_wheel(left_wheel(x.model)), right = x.other_wheel(1 - left.k);
-    const Motions by = axle_motions(x.response->free, left, first_patch_force + 2, -1);
-    return ratio(left.patch().position.y() - right.patch().position.y(), turn_of_axle(x, by),
+    const Motions motions = axle_motions(x.response->free, left, first_patch_force + 2, -1);
+    return ratio(left.patch().position.y() - right.patch().position.y(), turn_of_axle(x, motions),
                  max_stiffness);
 }
 
@@ -138,12 +138,12 @@ double roll_stiffness_by(const Subject& x, Carries kind) {
     const double whole = roll_stiffness(x);
     if (!std::isfinite(whole)) return whole;
     const Subject left = x.other_wheel(left_wheel(x.model)), right = x.other_wheel(1 - left.k);
-    const Motions by = axle_motions(x.response->free, left, first_patch_force + 2, -1);
+    const Motions motions = axle_motions(x.response->free, left, first_patch_force + 2, -1);
     const double rise =
-        x.displacement(by, left.patch()).z() - x.displacement(by, right.patch()).z();
+        x.displacement(motions, left.patch()).z() - x.displacement(motions, right.patch()).z();
     constexpr double step = 1e-5;  // [m] of the rise, to either side
-    const Equilibrium above = moved_by(*x.state, by, step / rise),
-                      below = moved_by(*x.state, by, -step / rise);
+    const Equilibrium above = moved_by(*x.state, motions, step / rise),
+                      below = moved_by(*x.state, motions, -step / rise);
     const Branch none;
     double work = 0;  // over a rise of 2 step, for which the unit forces do (2 step)² / rise
     for (std::size_t k = 0; k < x.model.elastics.size(); ++k) {
@@ -156,12 +156,12 @@ double roll_stiffness_by(const Subject& x, Carries kind) {
     }
     return whole * work * rise / (4 * step * step);
 }
-Entry roll_stiffness_by(Carries kind, const std::string& name, const std::string& of) {
+Entry roll_stiffness_by(Carries kind, const std::string& name, const std::string& elements) {
     return {
         Owner::axle,
         "roll_stiffness_of_" + name,
         Unit::newton_metre_per_deg,
-        "part of the roll stiffness: work of the " + of +
+        "part of the roll stiffness: work of the " + elements +
             " over that of the roll moment; what is left of the sum are turning preloads",
         no_rate,
         [kind](const Subject& x) { return roll_stiffness_by(x, kind); },

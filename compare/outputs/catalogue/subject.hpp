@@ -151,12 +151,13 @@ std::string axis_words(int axis);
 // ---- The parts of the catalogue, in its order.
 void add_angles(std::vector<Entry>& all);  // angles.cpp
 void add_rates(std::vector<Entry>& all);   // rates.cpp
-void add_roll(std::vector<Entry>& all);    // roll.cpp, among the rates
+void add_roll(std::vector<Entry>& all);    // roll.cpp, called by add_rates
 // Entries by other definitions than the project's own:
 void add_angle_definitions(std::vector<Entry>& all);  // angles.cpp
 void add_rate_definitions(std::vector<Entry>& all);   // rates.cpp
-void add_roll_definitions(std::vector<Entry>& all);   // roll.cpp, among the rates
-// force_tests.cpp, among the rates. `alone`: only the tests of an axle with a load on one wheel; else all others.
+void add_roll_definitions(std::vector<Entry>& all);   // roll.cpp, called by add_rate_definitions
+// force_tests.cpp, called by both of rates.cpp. `alone`: only the tests of an axle with a load on one
+// wheel; else all others.
 void add_force_tests(std::vector<Entry>& all, bool alone);
 
 }  // namespace elastocheck::compare

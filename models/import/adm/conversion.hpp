@@ -73,7 +73,7 @@ struct Conversion {
         false;  // times end at that of the last STEP or IF of TIME; else after one second
     int variables_left = 1'000'000;  // substitutions of VARIABLEs that the file may still use
     double characters_left = 2e8;    // characters of functions of TIME that may still be evaluated
-    std::map<int, std::optional<std::string>> variable_functions = {};  // none: user-written
+    std::map<int, std::optional<std::string>> variable_functions = {};  // by id; none: user-written
 
     // ---- Look-up functions; throw SceneError for an undefined reference.
     const Marker& marker(const Statement& s, std::string_view argument) const;
@@ -92,7 +92,7 @@ struct Conversion {
     // Whether both parts exist and differ; else notes why the statement is not converted.
     bool is_between_two(const Statement& s, const Marker& I, const Marker& J);
 
-    // ---- Notes on a statement.
+    // ---- Notes on a statement (draft.hpp): converted, converted inexactly, not representable, without effect.
     void count(const std::string& kind) { draft.notes.count(kind); }
     template <class... A>
     void warn(const Statement& s, fmt::format_string<A...> what, A&&... a) {
@@ -111,7 +111,7 @@ struct Conversion {
         draft.notes.leave_out(why, {s.line, part + " of " + s.place().what});
     }
 
-    // Value of a function at a time, with VARIABLEs substituted, in units of the file.
+    // Value of a function at a time, with VARIABLEs substituted, in units of the file; `events` as in Context.
     Value function(const std::string& text, double time = 0, std::vector<double>* events = nullptr);
     TimeFunction time_function(const std::string& text);
 };

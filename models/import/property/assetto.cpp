@@ -125,13 +125,13 @@ struct AssettoReader {
                  " N/m between both wheels is not in the scene, which has one (--both-wheels)");
     }
 
-    void add_spring(const std::string& called, const std::string& place) {
+    void add_spring(const std::string& spring_name, const std::string& ends) {
         const double k = number_or(axle, "SPRING_RATE", 0);
         if (k == 0) return;
         const std::string preload = computed(k * number_or(axle, "ROD_LENGTH", 0));
         draft.springs.push_back(
-            {called,
-             fmt::format("{{{}, rate: {}, preload: {}}}", place, computed(k / 1000), preload),
+            {spring_name,
+             fmt::format("{{{}, rate: {}, preload: {}}}", ends, computed(k / 1000), preload),
              source_of(axle, "SPRING_RATE")});
         draft.notes.count("spring");
     }
@@ -140,10 +140,10 @@ struct AssettoReader {
     void read_live_axle(const Value& type) {
         const auto links_of_axle = ini.optional("AXLE");
         if (!links_of_axle) fail(file, 0, "[AXLE]", "missing; it has the links of the axle");
-        const Cursor given = links_of_axle->require("LINK_COUNT");
-        const double count = given.number();
+        const Cursor link_count = links_of_axle->require("LINK_COUNT");
+        const double count = link_count.number();
         if (count != 4 && count != 5)
-            fail(file, given.value->line, "LINK_COUNT", "{:g}; known: 4, 5", count);
+            fail(file, link_count.value->line, "LINK_COUNT", "{:g}; known: 4, 5", count);
         draft.remarks = {fmt::format(
             "The live axle of [{}], x forward, y left, z up; the origin is in its middle.", name)};
         struct Link {
@@ -225,12 +225,12 @@ Draft import_assetto(std::string_view text, const std::string& file, Options& op
         fail(file, 0, "--axle", "choose an axle of the file: {}", fmt::join(axles, ", "));
     const std::string name = options.axle.empty() ? axles[0] : options.axle;
     const Cursor axle = ini.require(reader::capitals(name));
-    const Value& given = *axle.require("TYPE").value;
+    const Value& type_in_file = *axle.require("TYPE").value;
     const Value& types = mechanism_table("assetto");
-    const Value* type = entry(types, reader::capitals(given.text));
+    const Value* type = entry(types, reader::capitals(type_in_file.text));
     if (!type)
-        fail(file, given.line, "TYPE", "{} is not read; known: {}", reader::quote(given.text),
-             fmt::join(types.keys, ", "));
+        fail(file, type_in_file.line, "TYPE", "{} is not read; known: {}",
+             reader::quote(type_in_file.text), fmt::join(types.keys, ", "));
     AssettoReader reading{ini, file, reader::capitals(name), axle, options};
     reading.draft = draft_of_points(file, "suspensions.ini of Assetto Corsa");
     reading.draft.title += ", " + name;

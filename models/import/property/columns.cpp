@@ -383,7 +383,7 @@ struct DeclaredUnit {
 // The unit of a column: that in the last of the rows `rows` (first, end) above the points that has one.
 DeclaredUnit unit_of(const Sheet& sheet, const std::string& file,
                      std::pair<std::size_t, std::size_t> rows, std::size_t column,
-                     const std::string& axis, bool may_be_unknown) {
+                     const std::string& axis, bool ignore_unknown) {
     DeclaredUnit declared;
     for (std::size_t r = rows.first; r < rows.second; ++r) {
         const std::string_view cell = sheet.rows[r].at(column);
@@ -395,7 +395,7 @@ DeclaredUnit unit_of(const Sheet& sheet, const std::string& file,
             declared.unit = word;
             declared.from =
                 fmt::format("by the heading {} in line {}", reader::quote(cell), declared.line);
-        } else if (!may_be_unknown) {
+        } else if (!ignore_unknown) {
             fail(file, declared.line, axis,
                  "{} is not a unit of a coordinate; allowed: {}; or say it with --unit",
                  reader::quote(word), fmt::join(length_units, ", "));

@@ -32,12 +32,12 @@ struct PointColumns {
 inline constexpr const char* length_units[] = {"mm", "cm", "m", "in"};
 double millimetres(const std::string& unit);  // of one such unit
 
-// `map` is "name=Punkt,x=X_mm,y=3,z=D", each column by its heading, its number from 1 or its
-// letters; instead of x, y, z also left.x, ..., right.z; or with side=COLUMN. Without a map the
+// `choice` is "name=Punkt,x=X_mm,y=3,z=D", each column by its heading, its number from 1 or its
+// letters; instead of x, y, z also left.x, ..., right.z; or with side=COLUMN. Without a choice the
 // columns are found by the headings name, point or hardpoint, x, y, z.
 // `unit` is that of --unit; empty: headings or the lines below them say it.
 // Throws SceneError with the headings of the table and the option that chooses among them.
-PointColumns point_columns(const Sheet& sheet, const std::string& file, const std::string& map,
+PointColumns point_columns(const Sheet& sheet, const std::string& file, const std::string& choice,
                            const std::string& unit);
 
 // A number in a table of points; the sign may be + or the minus sign U+2212. None for other text.

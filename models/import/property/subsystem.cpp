@@ -82,7 +82,7 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
             fail(file.file, block.line, "HARDPOINT", "no column {}", wanted);
         };
         if (block.table.columns.empty()) continue;
-        const std::size_t of_name = column("hardpoint_name"), of_side = column("symmetry"),
+        const std::size_t name_column = column("hardpoint_name"), side_column = column("symmetry"),
                           xyz[] = {column("x"), column("y"), column("z")};
         for (std::size_t n = 0; n < block.table.rows.size(); ++n) {
             const auto& row = block.table.rows[n];
@@ -92,12 +92,12 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
                 p[static_cast<Eigen::Index>(k)] =
                     along[k] * (1000 * file.length) *
                     reader::real(file, line, "HARDPOINT", row[xyz[k]], 1e30);
-            const std::string& side = row[of_side];
+            const std::string& side = row[side_column];
             const bool pair = side == "left/right" || side == "left" || side == "right";
             any_pair |= side == "left/right";
             const std::string point =
-                row[of_name] + (pair ? side == "right" ? "_right" : "_left" : "");
-            draft.points.add(p, point, {line, row[of_name]});
+                row[name_column] + (pair ? side == "right" ? "_right" : "_left" : "");
+            draft.points.add(p, point, {line, row[name_column]});
             draft.notes.count("HARDPOINT");
         }
     }

@@ -57,14 +57,14 @@ bool is_called(const pugi::xml_node& node, std::string_view name) {
     const std::string_view full = node.name();
     return full.substr(full.find(':') + 1) == name;  // npos + 1 is 0
 }
-std::vector<pugi::xml_node> children(const pugi::xml_node& of, std::string_view name) {
+std::vector<pugi::xml_node> children(const pugi::xml_node& parent, std::string_view name) {
     std::vector<pugi::xml_node> found;
-    for (const pugi::xml_node& child : of)
+    for (const pugi::xml_node& child : parent)
         if (is_called(child, name)) found.push_back(child);
     return found;
 }
-pugi::xml_node child(const pugi::xml_node& of, std::string_view name) {
-    const auto found = children(of, name);
+pugi::xml_node child(const pugi::xml_node& parent, std::string_view name) {
+    const auto found = children(parent, name);
     return found.empty() ? pugi::xml_node() : found.front();
 }
 

@@ -173,11 +173,11 @@ double positive(const Cursor& field, const Unit& unit) {
 // Unit of E and G, force/length².
 Unit modulus(const Units& u) {
     const double L = u.length.divide;
-    return {u.force.name + "/" + u.length.name + "²", 1, u.force.multiply * L * L};
+    return {.name = u.force.name + "/" + u.length.name + "²", .multiply = u.force.multiply * L * L};
 }
 // length² or length⁴
 Unit power_of_length(const Units& u, int n) {
-    return {u.length.name + (n == 2 ? "²" : "⁴"), pow(u.length.divide, n)};
+    return {.name = u.length.name + (n == 2 ? "²" : "⁴"), .divide = pow(u.length.divide, n)};
 }
 
 // Rod or tube: A = π (D² - d²)/4,  I = π (D⁴ - d⁴)/64,  J = 2 I.
@@ -278,7 +278,7 @@ std::vector<Elastic> segments(const std::string& name, const Cursor& field,
                         .j = marker(body_at(k)),
                         .law = LinearStiffness{stiffness(section, (to - from).norm())}};
         bushing.formulation.frame = Formulation::Frame::middle;
-        list.push_back({numbered(name, k), bushing, false, WrittenAs::beam});
+        list.push_back({.name = numbered(name, k), .kind = bushing, .written_as = WrittenAs::beam});
     }
     return list;
 }
@@ -321,8 +321,9 @@ void read_beams(const Cursor& scene, const Definitions& defs, std::vector<Elasti
         const auto other = mirrored_name(*defs.mirror, name);
         if (!other) continue;
         for (std::size_t k = 0; k < list.size(); ++k)
-            elastics.push_back(
-                {numbered(*other, k + 1), twin(list[k].kind, defs), false, WrittenAs::beam});
+            elastics.push_back({.name = numbered(*other, k + 1),
+                                .kind = twin(list[k].kind, defs),
+                                .written_as = WrittenAs::beam});
     }
 }
 

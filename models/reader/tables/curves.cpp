@@ -51,7 +51,7 @@ Curve interpolated(const Cursor& curve, const std::vector<TablePoint>& points) {
     const auto between = curve.optional("interpolation");
     const bool is_linear =
         between && between->one_of("a kind of interpolation", {"monotone", "linear"}) == 1;
-    return is_linear ? polygon(points) : interpolant(points);
+    return is_linear ? piecewise_linear(points) : interpolant(points);
 }
 
 bool is_known_outside(const Cursor& curve) {

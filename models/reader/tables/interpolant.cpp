@@ -53,7 +53,7 @@ Curve interpolant(const std::vector<TablePoint>& points) {
     return curve;
 }
 
-Curve polygon(const std::vector<TablePoint>& points) {
+Curve piecewise_linear(const std::vector<TablePoint>& points) {
     Curve curve;
     for (std::size_t k = 0; k < points.size(); ++k) {
         // the last piece continues the one before it

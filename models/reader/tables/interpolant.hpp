@@ -1,4 +1,4 @@
-// Monotone piecewise cubic interpolation (PCHIP) of a table.
+// Interpolants of a table: monotone piecewise cubic (PCHIP) and piecewise linear.
 #pragma once
 
 #include <vector>
@@ -19,6 +19,6 @@ Curve interpolant(const std::vector<TablePoint>& points);
 
 // The piecewise linear interpolant: through every point, C0; its slope jumps at the points. Outside
 // the points it is linear with the end slopes. Pre: as above.
-Curve polygon(const std::vector<TablePoint>& points);
+Curve piecewise_linear(const std::vector<TablePoint>& points);
 
 }  // namespace elastocheck::reader

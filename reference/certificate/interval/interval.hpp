@@ -37,24 +37,24 @@ struct Interval {
 inline constexpr Interval everything{-std::numeric_limits<double>::infinity(),
                                      std::numeric_limits<double>::infinity()};
 
-inline bool bounded(const Interval& a) {
+inline bool is_bounded(const Interval& a) {
     return a.lo > -std::numeric_limits<double>::infinity() &&
            a.hi < std::numeric_limits<double>::infinity();
 }
 inline bool is_zero(const Interval& a) { return a.lo == 0 && a.hi == 0; }
 inline bool contains(const Interval& a, double x) { return a.lo <= x && x <= a.hi; }
-inline bool inside(const Interval& a, const Interval& b) { return b.lo <= a.lo && a.hi <= b.hi; }
+inline bool is_inside(const Interval& a, const Interval& b) { return b.lo <= a.lo && a.hi <= b.hi; }
 inline bool are_disjoint(const Interval& a, const Interval& b) {
     return a.hi < b.lo || b.hi < a.lo;
 }
 
 // Largest and least absolute value; infinite and 0 for an unbounded interval.
 inline double mag(const Interval& a) {
-    return bounded(a) ? std::max(std::abs(a.lo), std::abs(a.hi))
-                      : std::numeric_limits<double>::infinity();
+    return is_bounded(a) ? std::max(std::abs(a.lo), std::abs(a.hi))
+                         : std::numeric_limits<double>::infinity();
 }
 inline double mig(const Interval& a) {
-    if (!bounded(a) || contains(a, 0)) return 0;
+    if (!is_bounded(a) || contains(a, 0)) return 0;
     return std::min(std::abs(a.lo), std::abs(a.hi));
 }
 // A double inside the interval, and the largest distance of its ends from it.
@@ -66,13 +66,13 @@ inline double rad(const Interval& a) {
 }
 
 inline Interval hull(const Interval& a, const Interval& b) {
-    if (!bounded(a) || !bounded(b)) return everything;
+    if (!is_bounded(a) || !is_bounded(b)) return everything;
     return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
 }
 // Intersection of two enclosures of the same number; unbounded if they are disjoint.
 inline Interval intersection(const Interval& a, const Interval& b) {
-    if (!bounded(a)) return b;
-    if (!bounded(b)) return a;
+    if (!is_bounded(a)) return b;
+    if (!is_bounded(b)) return a;
     const Interval both{std::max(a.lo, b.lo), std::min(a.hi, b.hi)};
     return both.lo <= both.hi ? both : everything;
 }
@@ -99,8 +99,8 @@ inline Interval operator+(const Interval& a, const Interval& b) {
 inline Interval operator-(const Interval& a, const Interval& b) { return a + -b; }
 
 inline Interval operator*(const Interval& a, const Interval& b) {
-    if (is_zero(a)) return bounded(b) ? Interval{} : everything;
-    if (is_zero(b)) return bounded(a) ? Interval{} : everything;
+    if (is_zero(a)) return is_bounded(b) ? Interval{} : everything;
+    if (is_zero(b)) return is_bounded(a) ? Interval{} : everything;
     const double p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
     const double sum = (p + q) + (r + s);  // detects 0 · ∞, which a minimum would skip
     if (!(sum - sum == 0)) return everything;
@@ -109,7 +109,7 @@ inline Interval operator*(const Interval& a, const Interval& b) {
 }
 
 inline Interval operator/(const Interval& a, const Interval& b) {
-    if (!bounded(a) || !bounded(b) || contains(b, 0)) return everything;
+    if (!is_bounded(a) || !is_bounded(b) || contains(b, 0)) return everything;
     if (is_zero(a)) return {};
     const double p = a.lo / b.lo, q = a.lo / b.hi, r = a.hi / b.lo, s = a.hi / b.hi;
     return outward(std::min(std::min(p, q), std::min(r, s)),
@@ -122,13 +122,13 @@ inline Interval& operator*=(Interval& a, const Interval& b) { return a = a * b; 
 
 // A square is not negative, for any rounding.
 inline Interval sqr(const Interval& a) {
-    if (!bounded(a)) return everything;
+    if (!is_bounded(a)) return everything;
     const double least = mig(a), most = mag(a);
     return {std::max(0.0, next_down(least * least)), most == 0 ? 0 : next_up(most * most)};
 }
 
 inline Interval sqrt(const Interval& a) {
-    if (!bounded(a) || !(a.lo >= 0)) return everything;
+    if (!is_bounded(a) || !(a.lo >= 0)) return everything;
     return {std::max(0.0, next_down(std::sqrt(a.lo))), a.hi == 0 ? 0 : next_up(std::sqrt(a.hi))};
 }
 

@@ -22,25 +22,25 @@ bool reaches_outside(const Curve& curve, const Interval& x) {
 
 }  // namespace
 
-bool over_a_knot(const Curve& curve, const Interval& x) {
+bool spans_knot(const Curve& curve, const Interval& x) {
     return piece_at(curve, x.lo) != piece_at(curve, x.hi);
 }
 
 void expand(const Curve& curve, double x, int count, double* f) {
-    const auto of = expand_piece(curve, piece_at(curve, x), x);
-    for (int j = 0; j < count; ++j) f[j] = j < 4 ? of[static_cast<std::size_t>(j)] : 0;
+    const auto coefficients = expand_piece(curve, piece_at(curve, x), x);
+    for (int j = 0; j < count; ++j) f[j] = j < 4 ? coefficients[static_cast<std::size_t>(j)] : 0;
 }
 
 void expand(const Curve& curve, const Interval& x, int count, Interval* f) {
     std::fill(f, f + count, everything);
-    if (!bounded(x) || reaches_outside(curve, x)) return;
+    if (!is_bounded(x) || reaches_outside(curve, x)) return;
     const std::size_t first = piece_at(curve, x.lo), last = piece_at(curve, x.hi);
     for (std::size_t p = first; p <= last; ++p) {
         const Interval on{p == first ? x.lo : curve.knots[p - 1],
                           p == last ? x.hi : curve.knots[p]};
-        const auto of = expand_piece(curve, p, on);
+        const auto coefficients = expand_piece(curve, p, on);
         for (int j = 0; j < count; ++j) {
-            const Interval here = j < 4 ? of[static_cast<std::size_t>(j)] : Interval(0);
+            const Interval here = j < 4 ? coefficients[static_cast<std::size_t>(j)] : Interval(0);
             if (p == first)
                 f[j] = here;
             else

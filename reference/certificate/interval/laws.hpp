@@ -13,7 +13,7 @@ void expand(const Curve& curve, const Interval& x, int count, Interval* f);
 void expand(const Curve& curve, double x, int count, double* f);
 
 // Whether x contains a knot.
-bool over_a_knot(const Curve& curve, const Interval& x);
+bool spans_knot(const Curve& curve, const Interval& x);
 
 template <class T>
 T force(const ScalarLaw& law, const T& x) {

@@ -1,3 +1,4 @@
+// Instantiations of evaluate.hpp for doubles; geometry and slopes of deformations.
 #include "reference/certificate/statement/evaluate.hpp"
 
 namespace elastocheck::reference::certificate {

@@ -1,3 +1,5 @@
+// Instantiations of evaluate.hpp along a piece of a branch, for the equations (Along) and for
+// their Jacobian (SlopesAlong).
 #include "reference/certificate/statement/evaluate.hpp"
 
 namespace elastocheck::reference::certificate {

@@ -2,8 +2,9 @@
 //
 //   V(x; a) = Σ U(e(x); a) - Σ f(a)·p(x) - Σ m(a)·φ,   U(e; a) = s(a) u(e - e₀(a)) + b(a)ᵀ e
 //
-// A brake force has no potential. At the centre of a chart it is replaced by a dead force at the
-// point of the carrier that coincides with the patch there (dead_force below).
+// Dead moments and brake forces have no potential: m·φ holds to first order at the centre of a chart
+// (chart.hpp), and a brake force is replaced there by a dead force at the point of the carrier that
+// coincides with the patch (dead_force below).
 //
 // e(x) is an element's deformation: ℓ of a spring, (d, θ) of a bushing; u its law (laws.hpp), e₀
 // the spring's free length or the bushing's undeformed offset, b the preload. s = 1, except for

@@ -32,7 +32,7 @@ struct Prescribed {
 // No loads, all other quantities as in the model.
 Prescribed nothing_prescribed(const Model& model);
 
-struct Course {
+struct Course {  // of a branch: p(a) = start + rate · a
     Prescribed start, rate;
 };
 

@@ -119,7 +119,7 @@ std::vector<compare::LoadCase> read_load_cases(std::string_view csv, const std::
         }
         cases.push_back(std::move(load_case));
     };
-    read_sheet(csv, file, max_cases, head, row);
+    read_csv_table(csv, file, max_cases, head, row);
     return cases;
 }
 

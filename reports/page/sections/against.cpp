@@ -25,8 +25,8 @@ std::pair<std::string, std::string> names_of(const SceneAnalyses& scene, const A
     return {file(scene.scene.source), file(against.source)};
 }
 
-DrawnCurve curve(const char* of, const Against::Line& line) {
-    DrawnCurve drawn{of};
+DrawnCurve curve(const char* legend, const Against::Line& line) {
+    DrawnCurve drawn{legend};
     for (std::size_t k = 0; k < line.a.size(); ++k) drawn.rows.push_back({line.a[k], line.y[k]});
     return drawn;
 }

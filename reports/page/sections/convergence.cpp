@@ -38,10 +38,10 @@ Table levels_of(const std::vector<StepRow>& rows) {
 
 // Step errors of the published recursion over one branch, a figure a reading.
 std::optional<FigureGroup> step_errors(const std::string& branch,
-                                       const std::vector<StepRow>& steps_of) {
+                                       const std::vector<StepRow>& rows) {
     FigureGroup group;
-    for (const auto& reading : distinct(steps_of, &StepRow::reading)) {
-        const Table levels = levels_of(where(steps_of, &StepRow::reading, reading));
+    for (const auto& reading : distinct(rows, &StepRow::reading)) {
+        const Table levels = levels_of(where(rows, &StepRow::reading, reading));
         const std::string name = as_words(reading);
         Figure figure = figure_of({.id = fmt::format("steps-{}-{}", slug(branch), slug(name)),
                                    .title = fmt::format("{}: {}", branch, name),
@@ -90,17 +90,17 @@ std::optional<Section> convergence_section(const SceneAnalyses& scene) {
     const auto steps = where(step_rows(*scene.study), &StepRow::method, "published");
     for (const auto& branch : distinct(outputs, &StudyRow::branch)) {
         if (!leads(scene, branch)) continue;
-        if (auto made = step_errors(branch, where(steps, &StepRow::branch, branch)))
-            section.figures.push_back(std::move(*made));
-        const auto found = where(outputs, &StudyRow::branch, branch);
-        const std::string reading = found.front().reading;
-        for (const auto& row : found)
+        if (auto errors = step_errors(branch, where(steps, &StepRow::branch, branch)))
+            section.figures.push_back(std::move(*errors));
+        const auto branch_rows = where(outputs, &StudyRow::branch, branch);
+        const std::string reading = branch_rows.front().reading;
+        for (const auto& row : branch_rows)
             if (row.method == "published" && !row.not_studied.empty() && row.reading != reading)
                 section.words["notes"].push_back({{"branch", branch},
                                                   {"reading", as_words(row.reading)},
                                                   {"why", row.not_studied}});
         Table& table =
-            section.tables.emplace_back(table_of(where(found, &StudyRow::reading, reading)));
+            section.tables.emplace_back(table_of(where(branch_rows, &StudyRow::reading, reading)));
         table.caption = fmt::format("Orders and gaps, branch {}, {}", branch, reading);
         table.detail = true;
     }

@@ -55,8 +55,8 @@ std::vector<DeviationAt> deviations_over(const SceneAnalyses& scene, const Sweep
                 if (std::abs(chosen.a[l] - a) <= 1e-9 * std::abs(truth.a.back())) return errors[l];
             return compare::nan;
         };
-        const auto value = [](const std::vector<double>& of, std::size_t k) {
-            return k < of.size() ? of[k] : compare::nan;
+        const auto value = [](const std::vector<double>& list, std::size_t k) {
+            return k < list.size() ? list[k] : compare::nan;
         };
         for (const auto k : thinned(load.size(), 60))
             if (truth.a[k] != 0 || stations.empty())
@@ -147,7 +147,7 @@ std::optional<FigureGroup> deviations(const SceneAnalyses& scene, const Sweep& s
         fmt::format("Worst of {}. {}", which, agreement), {figure}, std::move(table)};
 }
 
-// Of the recursion in the rates. No share of a value that its error exceeds: it is zero.
+// Errors of the recursion in the rates. A value that its error exceeds is zero: no share of it is given.
 Table errors_in_rates(const compare::Comparison& comparison) {
     auto design = characteristic_rows(comparison);
     for (auto& r : design) {

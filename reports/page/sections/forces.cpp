@@ -101,17 +101,17 @@ std::optional<Section> forces_section(const SceneAnalyses& scene) {
     using enum Digits;
     using L = Largest;
     std::vector<compare::ColumnOf<L>> columns{{"element", words, &L::element}};
-    for (const auto& [name, unit, of] :
+    for (const auto& [name, unit, row] :
          {std::tuple{"largest force", "N", &L::force}, {"largest moment", "N·m", &L::moment}}) {
         columns.push_back({name, three,
-                           [of](const L& l) -> compare::AnyCell {
-                               if (l.*of == nullptr) return "";
-                               return (l.*of)->value;
+                           [row](const L& l) -> compare::AnyCell {
+                               if (l.*row == nullptr) return "";
+                               return (l.*row)->value;
                            },
                            "", unit});
-        columns.push_back({"where", words, [of](const L& l) { return place_of(l.*of); }});
+        columns.push_back({"where", words, [row](const L& l) { return place_of(l.*row); }});
         columns.push_back({"deformed by", words,
-                           [&, of](const L& l) { return deformation_of(l.*of, elements); }});
+                           [&, row](const L& l) { return deformation_of(l.*row, elements); }});
     }
     Table table = compare::table(
         {.caption = "Largest force and moment of each element over all points of the branches"},

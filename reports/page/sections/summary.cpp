@@ -20,10 +20,10 @@ namespace {
 
 using compare::StaticRow;
 
-// No finer than a thousandth of a mm or deg, or a column would be of zeros and one digit.
+// 0 below 5e-5 mm or deg, which would be the only digits in a column of zeros.
 double settled_value(double value) { return std::abs(value) < 5e-5 ? 0 : value; }
 
-// As drawn and as settled, left and right as columns.
+// Outputs of the wheels in rows; as drawn and as settled, left and right, in columns.
 Table alignment_table(const SceneAnalyses& scene) {
     const auto values = static_rows(scene.model, scene.comparison);
     const auto outputs = distinct(values, &StaticRow::output);
@@ -38,14 +38,14 @@ Table alignment_table(const SceneAnalyses& scene) {
              return fmt::format("{} [{}]", as_words(output),
                                 std::ranges::find(values, output, &StaticRow::output)->unit);
          }}};
-    for (const auto& [state, of] :
+    for (const auto& [state, value] :
          {std::pair{"drawn", &StaticRow::drawn}, {"settled", &StaticRow::settled}})
         for (const auto& wheel : scene.model.wheels)
             columns.push_back(
                 {fmt::format("{}{}{}", state, wheel.name.empty() ? "" : " ", wheel.name),
-                 Digits::four, [&, of](const Output& output) {
+                 Digits::four, [&, value](const Output& output) {
                      const auto row = row_of(output, wheel.name);
-                     return row == values.end() ? compare::nan : settled_value((*row).*of);
+                     return row == values.end() ? compare::nan : settled_value((*row).*value);
                  }});
     Table table = compare::table(
         {.caption = fmt::format(

@@ -14,14 +14,15 @@ namespace {
 
 using compare::TradeRow;
 
-struct Price {
+struct CostAxis {
     const char *id, *column;
-    double TradeRow::*price;
+    double TradeRow::*cost;
     const char *axis, *title;
 };
-// The error of every method over this price, those that are not ranked left out.
-Figure precision(const compare::Trade& trade, std::vector<TradeRow> points, const Price& of) {
-    const auto& [id, column, price, axis, title] = of;
+// The error of every method over this measure of cost, without those that are not ranked.
+Figure precision(const compare::Trade& trade, std::vector<TradeRow> points,
+                 const CostAxis& cost_axis) {
+    const auto& [id, column, cost, axis, title] = cost_axis;
     std::erase_if(points, [](const TradeRow& point) { return !point.not_ranked.empty(); });
     Figure figure = figure_of({.id = id,
                                .title = title,
@@ -39,9 +40,9 @@ Figure precision(const compare::Trade& trade, std::vector<TradeRow> points, cons
     figure.description = fmt::format("Logarithmic plot of worst position error against {} for {}.",
                                      axis, enumerated(names));
     for (const auto& point : points)
-        if (point.recommended && point.*price > 0 && point.error > 0)
+        if (point.recommended && point.*cost > 0 && point.error > 0)
             figure.series.push_back(
-                {"recommended", Series::Style::rings, ink, 5, {{point.*price, point.error}}});
+                {"recommended", Series::Style::rings, ink, 5, {{point.*cost, point.error}}});
     return figure;
 }
 
@@ -54,7 +55,7 @@ std::optional<Section> price_section(const SceneAnalyses& scene) {
     section.words["points"] = trade->points_per_branch;
     section.words["not_confirmed"] = trade->rejected;
     section.words["reasons"] = trade->inconclusive;
-    section.words["judged_not"] = !section.words["reasons"].empty();
+    section.words["not_judged"] = !section.words["reasons"].empty();
     const auto points = trade_rows(*trade);
     const bool times = std::ranges::any_of(
         points, [](const TradeRow& point) { return std::isfinite(point.time_ratio); });

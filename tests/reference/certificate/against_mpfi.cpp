@@ -51,7 +51,7 @@ void note(bool fine, const char* what, const Interval& a, const Interval& b, con
 // the enclosure must be unbounded.
 void holds(const char* what, const Interval& a, const Interval& b, const Interval& got,
            const Exact& exact) {
-    if (mpfi_nan_p(exact.x)) return note(!bounded(got), what, a, b, got);
+    if (mpfi_nan_p(exact.x)) return note(!is_bounded(got), what, a, b, got);
     note(mpfr_cmp_d(&exact.x->left, got.lo) >= 0 && mpfr_cmp_d(&exact.x->right, got.hi) <= 0, what,
          a, b, got);
 }
@@ -74,7 +74,7 @@ void operators(const Interval& a, const Interval& b) {
     holds("product", a, b, a * b, exact);
     mpfi_div(exact.x, x.x, y.x);
     if (contains(b, 0))
-        note(!bounded(a / b), "quotient by zero", a, b, a / b);
+        note(!is_bounded(a / b), "quotient by zero", a, b, a / b);
     else
         holds("quotient", a, b, a / b, exact);
     mpfi_sqr(exact.x, x.x);
@@ -83,16 +83,16 @@ void operators(const Interval& a, const Interval& b) {
         mpfi_sqrt(exact.x, x.x);
         holds("root", a, b, sqrt(a), exact);
     } else {
-        note(!bounded(sqrt(a)), "root below zero", a, b, sqrt(a));
+        note(!is_bounded(sqrt(a)), "root below zero", a, b, sqrt(a));
     }
     const Interval both = hull(a, b);
-    note(inside(a, both) && inside(b, both), "hull", a, b, both);
-    if (bounded(a)) {
+    note(is_inside(a, both) && is_inside(b, both), "hull", a, b, both);
+    if (is_bounded(a)) {
         const Interval ball = around(mid(a), rad(a));
-        note(inside(a, ball), "middle and radius", a, b, ball);
+        note(is_inside(a, ball), "middle and radius", a, b, ball);
     }
     const Interval common{std::max(a.lo, b.lo), std::min(a.hi, b.hi)}, cut = intersection(a, b);
-    if (!are_disjoint(a, b)) note(inside(common, cut), "intersection", a, b, cut);
+    if (!are_disjoint(a, b)) note(is_inside(common, cut), "intersection", a, b, cut);
 }
 
 // ---- y = asin √x / √(x (1-x)) and (1 - (1-x) y) / x with two derivatives, from
@@ -153,7 +153,7 @@ void angles(double y, double x) {
     const Real Y(y), X(x);
     mpfr_atan2(exact.x, Y.x, X.x, MPFR_RNDN);
     const Interval got = plane_angle(Interval(y), Interval(x));
-    if (bounded(got)) holds("angle in the plane", y, x, got, exact);
+    if (is_bounded(got)) holds("angle in the plane", y, x, got, exact);
     mpfr_cos(exact.x, Y.x, MPFR_RNDN);
     holds("cosine", y, y, cos_sin(y).cos, exact);
     mpfr_sin(exact.x, Y.x, MPFR_RNDN);
@@ -163,7 +163,7 @@ void angles(double y, double x) {
 // θ = 2 atan2(|v|, w) v / |v| of the direction of q, and c = (1 - (θ/2) cot(θ/2)) / θ².
 void logarithms(const Eigen::Quaterniond& stored) {
     const auto [theta, c] = logarithm(unit_quaternion<Interval>(stored));
-    if (!bounded(c)) return;
+    if (!is_bounded(c)) return;
     const double sign = stored.w() < 0 ? -1 : 1;
     const Real w(sign * stored.w()), x(sign * stored.x()), y(sign * stored.y()),
         z(sign * stored.z());

@@ -109,7 +109,7 @@ TEST(CertificateEquations, IntervalAcrossAKnotHasTheSlopesOfBothSides) {
             EXPECT_TRUE(contains(f[0], -0.5 * soft) && contains(f[0], 0.5 * stiff)) << soft;
             EXPECT_TRUE(contains(f[1], soft) && contains(f[1], stiff)) << soft << ", to " << end;
             EXPECT_EQ(contains(f[1], 3) || end < 1, true) << soft;
-            EXPECT_FALSE(bounded(f[2]) || bounded(f[3])) << "no second derivative at a knot";
+            EXPECT_FALSE(is_bounded(f[2]) || is_bounded(f[3])) << "no second derivative at a knot";
         }
     }
 }
@@ -227,16 +227,16 @@ TEST(CertificateEquations, StateBeyondTheEndOfATableIsNotProved) {
 TEST(CertificateEquations, VerifiedCholeskyAcceptsOnlyPositiveDefiniteMatrices) {
     Eigen::Matrix2d M, R = Eigen::Matrix2d::Zero();
     M << 1e12, 1, 1, 1e-6;
-    EXPECT_TRUE(positive_definite(M.sparseView(), R.sparseView()));
+    EXPECT_TRUE(is_positive_definite(M.sparseView(), R.sparseView()));
     R(1, 1) = 0.9e-6;
-    EXPECT_TRUE(positive_definite(M.sparseView(), R.sparseView()));
+    EXPECT_TRUE(is_positive_definite(M.sparseView(), R.sparseView()));
     R(1, 1) = 1.1e-6;
-    EXPECT_FALSE(positive_definite(M.sparseView(), R.sparseView()));
+    EXPECT_FALSE(is_positive_definite(M.sparseView(), R.sparseView()));
     M << 1, 1, 1, 1;
     R.setZero();
-    EXPECT_FALSE(positive_definite(M.sparseView(), R.sparseView()));
+    EXPECT_FALSE(is_positive_definite(M.sparseView(), R.sparseView()));
     M(1, 1) = std::nan("");
-    EXPECT_FALSE(positive_definite(M.sparseView(), R.sparseView()));
+    EXPECT_FALSE(is_positive_definite(M.sparseView(), R.sparseView()));
 }
 
 }  // namespace

@@ -111,14 +111,17 @@ std::optional<FigureGroup> effect_arrows(const SceneAnalyses& scene, const KeyFi
     }
     FigureGroup group;
     const auto along = [=](std::size_t axis) {
-        return [=](const Gradient& of) {
-            return std::abs(of.second[axis]) > rounded_effect * largest ? of.second[axis] : 0;
+        return [=](const Gradient& gradient) {
+            return std::abs(gradient.second[axis]) > rounded_effect * largest
+                       ? gradient.second[axis]
+                       : 0;
         };
     };
     group.table = compare::table<Gradient>(
         {.caption = fmt::format("Effect of 1 mm on {} [{}]", figure.title, figure.unit),
          .detail = true},
-        {{"hardpoint", Digits::words, [](const Gradient& of) { return as_words(of.first); }},
+        {{"hardpoint", Digits::words,
+          [](const Gradient& gradient) { return as_words(gradient.first); }},
          {"x", Digits::deviation, along(0)},
          {"y", Digits::deviation, along(1)},
          {"z", Digits::deviation, along(2)},

@@ -30,7 +30,7 @@ std::string number_label(const compare::EffectRow& row);
 
 // A hardpoint, and the gradient of a figure by its position, per 1 mm.
 using Gradient = std::pair<std::string, Position>;
-// Of all hardpoints that the rows have, in the order of the file.
+// Gradients by all hardpoints that the rows have, in the order of the file.
 std::vector<Gradient> gradients_of(const KeyFigure& figure,
                                    const std::vector<compare::EffectRow>& rows);
 double size_of(const Gradient& gradient);

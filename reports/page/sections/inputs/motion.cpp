@@ -23,7 +23,7 @@ std::string abscissa_of_figures(const Sweep& sweep) {
     return sweep.kind == "moment" ? "moment [N·m]" : sweep.parameter;
 }
 
-// By wheel, or once: the values of this abscissa at the stations.
+// Values of that abscissa at the stations `a`: the travel of each wheel, else the parameter once.
 json marks_of(const SceneAnalyses& scene, const Sweep& sweep, const std::vector<double>& a) {
     if (!sweep.lifts()) return json::array({a});
     json marks = json::array();

@@ -78,13 +78,14 @@ std::vector<double> abscissa_of(const SceneAnalyses& scene, const Family& family
 }
 
 std::vector<DrawnCurve> given_of(const SceneAnalyses& scene, const Family& family, const Case& c,
-                                 const FoundOutput& of, Scale scale) {
-    const std::string by = family.abscissa(of.wheel);
-    auto given = measured_curves(scene, c.sweep, by, of.channel);
-    std::ranges::move(candidate_curves(scene, c.sweep, by, of.channel), std::back_inserter(given));
-    const double push = family.by == By::push ? push_of(scene, c, of.wheel).factor : 1;
+                                 const FoundOutput& output, Scale scale) {
+    const std::string by = family.abscissa(output.wheel);
+    auto given = measured_curves(scene, c.sweep, by, output.channel);
+    std::ranges::move(candidate_curves(scene, c.sweep, by, output.channel),
+                      std::back_inserter(given));
+    const double push = family.by == By::push ? push_of(scene, c, output.wheel).factor : 1;
     for (auto& points : given) {
-        points.whose = of.of_all ? "" : of.wheel.name;
+        points.wheel = output.of_all ? "" : output.wheel.name;
         for (auto& row : points.rows) row = {push * row[0], scale(row[1])};
     }
     return given;

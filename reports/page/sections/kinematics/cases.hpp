@@ -79,6 +79,6 @@ std::string direction_of(const SceneAnalyses& scene, const Family& family, const
 
 // Points of an output that were measured or that candidates give, scaled as its curve is.
 std::vector<DrawnCurve> given_of(const SceneAnalyses& scene, const Family& family, const Case& c,
-                                 const FoundOutput& of, Scale scale);
+                                 const FoundOutput& output, Scale scale);
 
 }  // namespace elastocheck::reports

@@ -49,28 +49,29 @@ Rows rows_of(const std::vector<double>& x, const std::vector<double>& values, Sc
     return rows;
 }
 
-// Of each load case and wheel; of outputs of springs and dampers of each element.
+// The curves of a quantity, one for each load case and wheel, or element where it is of springs or dampers.
+// Measured and candidate points are added to `given`.
 std::vector<DrawnCurve> curves_of(const SceneAnalyses& scene, const Family& family,
                                   const Quantity& quantity, CurveRange& extent,
                                   std::vector<DrawnCurve>& given) {
     std::vector<DrawnCurve> curves;
     for (const Case& c : family.cases) {
         const std::string legend = c.legend() + direction_of(scene, family, c);
-        for (const auto& of : outputs_of(scene, quantity.name)) {
-            const auto values = c.curve.channel(of.channel),
-                       x = abscissa_of(scene, family, c, of.wheel);
+        for (const auto& output : outputs_of(scene, quantity.name)) {
+            const auto values = c.curve.channel(output.channel),
+                       x = abscissa_of(scene, family, c, output.wheel);
             if (values.empty() || values.size() != x.size()) continue;
-            const Scale scale = scale_of(quantity, of.wheel.side, values, c.curve.start);
-            const std::string whose = of.of_all ? "" : of.wheel.name;
-            add_curve(curves, {of.element.empty() ? legend : of.element, whose,
+            const Scale scale = scale_of(quantity, output.wheel.side, values, c.curve.start);
+            const std::string wheel = output.of_all ? "" : output.wheel.name;
+            add_curve(curves, {output.element.empty() ? legend : output.element, wheel,
                                rows_of(x, values, scale, quantity, extent)});
-            std::ranges::move(given_of(scene, family, c, of, scale), std::back_inserter(given));
+            std::ranges::move(given_of(scene, family, c, output, scale), std::back_inserter(given));
         }
     }
     return curves;
 }
 
-// In the same order, or in the opposite one, as of two wheels in roll.
+// Whether the points are the same, in the same order or, as of two wheels in roll, in the opposite one.
 bool coincide(const Rows& a, const Rows& b) {
     double size = 0;
     for (const auto& row : a)
@@ -82,7 +83,7 @@ bool coincide(const Rows& a, const Rows& b) {
     return std::ranges::equal(a, b, same) || std::ranges::equal(a, b | std::views::reverse, same);
 }
 
-// Of every curve at most so many points; all with its gaps, which are rows without numbers.
+// At most `most` points of every curve, without gaps if some are left out. A gap is a row without numbers.
 Table table_of_points(const compare::Chart& chart, const std::vector<DrawnCurve>& curves,
                       std::size_t most) {
     struct At {
@@ -99,8 +100,8 @@ Table table_of_points(const compare::Chart& chart, const std::vector<DrawnCurve>
     }
     return compare::table<At>(
         {.caption = fmt::format("{} over {}", chart.y.front(), chart.x), .detail = true},
-        {{chart.by[0], Digits::words, [](const At& at) { return at.curve->of; }},
-         {chart.by[1], Digits::words, [](const At& at) { return at.curve->whose; }},
+        {{chart.by[0], Digits::words, [](const At& at) { return at.curve->legend; }},
+         {chart.by[1], Digits::words, [](const At& at) { return at.curve->wheel; }},
          {chart.x, Digits::place, &At::x},
          {chart.y.front(), Digits::four, &At::y}},
         points);
@@ -110,7 +111,7 @@ Table table_of_points(const compare::Chart& chart, const std::vector<DrawnCurve>
 
 bool add_curve(std::vector<DrawnCurve>& curves, DrawnCurve curve) {
     if (curve.rows.empty() || std::ranges::any_of(curves, [&](const DrawnCurve& other) {
-            return other.of == curve.of && coincide(other.rows, curve.rows);
+            return other.legend == curve.legend && coincide(other.rows, curve.rows);
         }))
         return false;
     curves.push_back(std::move(curve));

@@ -10,7 +10,7 @@
 
 namespace elastocheck::reports {
 
-// Whether it was added: unless one of the same load case coincides with it, as of the other wheel.
+// Adds a curve unless one of the same load case coincides with it, as of the other wheel; returns whether it did.
 bool add_curve(std::vector<DrawnCurve>& curves, DrawnCurve curve);
 
 // The figure of these curves and some of their points as a table. `chart` has id, title,

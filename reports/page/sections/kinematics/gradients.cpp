@@ -16,7 +16,7 @@ namespace {
 // Abscissa of a fit: half its range and its unit, and what gradients are per.
 struct Fitted {
     By by;
-    compare::DrawnAbscissa over;
+    compare::DrawnAbscissa abscissa;
     double range, per;
     const char *unit, *per_unit, *words;
 };
@@ -52,18 +52,18 @@ FittedLine line_of(const std::vector<double>& x, const std::vector<double>& y, d
 }
 
 struct GradientRow {
-    std::string of, unit;
+    std::string figure, unit;
     std::vector<double> values;  // of the wheels
     double mean = compare::nan;
 };
 
 Table gradients_over(const SceneAnalyses& scene, const Case& c) {
-    const Fitted over = fitted_over(c.sweep);
+    const Fitted fit = fitted_over(c.sweep);
     const auto& wheels = scene.model.wheels;
-    const Family family{.id = "", .x = "", .by = over.by};
+    const Family family{.id = "", .x = "", .by = fit.by};
     std::vector<GradientRow> rows;
     FittedLine range;
-    for (const auto& quantity : compare::figures_over(over.over)) {
+    for (const auto& quantity : compare::figures_over(fit.abscissa)) {
         if (!quantity.has_gradient || quantity.presentation == compare::Presentation::off_centre)
             continue;
         GradientRow row{label_of(quantity), "", std::vector(wheels.size(), compare::nan)};
@@ -73,18 +73,18 @@ Table gradients_over(const SceneAnalyses& scene, const Case& c) {
                  y = c.curve.channel(output.channel);
             if (x.size() != y.size()) continue;
             // rolls towards this wheel
-            if (over.by == By::roll && !output.of_all)
+            if (fit.by == By::roll && !output.of_all)
                 for (double& value : x) value *= -output.wheel.side;
             const Scale scale = scale_of(quantity, output.wheel.side, y, c.curve.start);
-            const FittedLine line = line_of(x, y, over.range);
+            const FittedLine line = line_of(x, y, fit.range);
             if (std::isnan(line.slope)) continue;
             // forces per mm, not per 100 mm
-            const bool of_force = output.unit == "N" && over.by == By::travel;
+            const bool of_force = output.unit == "N" && fit.by == By::travel;
             const double value =
-                without_rounding(scale.factor * line.slope * (of_force ? 1 : over.per));
+                without_rounding(scale.factor * line.slope * (of_force ? 1 : fit.per));
             range.from = std::min(range.from, line.from);
             range.to = std::max(range.to, line.to);
-            row.unit = fmt::format("{}/{}", output.unit, of_force ? "mm" : over.per_unit);
+            row.unit = fmt::format("{}/{}", output.unit, of_force ? "mm" : fit.per_unit);
             for (std::size_t w = 0; w < wheels.size() && !output.of_all; ++w)
                 if (wheels[w].name == output.wheel.name) row.values[w] = value;
             sum += value;
@@ -96,7 +96,7 @@ Table gradients_over(const SceneAnalyses& scene, const Case& c) {
         }
     }
     using R = GradientRow;
-    std::vector<compare::ColumnOf<R>> columns{{"gradient of", Digits::words, &R::of}};
+    std::vector<compare::ColumnOf<R>> columns{{"gradient of", Digits::words, &R::figure}};
     for (std::size_t w = 0; w < wheels.size() && wheels.size() > 1; ++w)
         columns.push_back({wheels[w].name, Digits::four, [w](const R& r) { return r.values[w]; }});
     columns.push_back({wheels.size() > 1 ? "mean" : "value", Digits::four, &R::mean});
@@ -104,8 +104,8 @@ Table gradients_over(const SceneAnalyses& scene, const Case& c) {
     Table table = compare::table({}, columns, rows);
     const std::string positive = push_of(scene, c, wheels[0]).positive;
     table.caption = fmt::format("{}{}{}, over {} from {} to {}\u00a0{}", c.legend(),
-                                positive.empty() ? "" : " ", positive, over.words,
-                                short_number(range.from), short_number(range.to), over.unit);
+                                positive.empty() ? "" : " ", positive, fit.words,
+                                short_number(range.from), short_number(range.to), fit.unit);
     return table;
 }
 

@@ -56,9 +56,9 @@ std::vector<FoundOutput> outputs_of(const SceneAnalyses& scene, const std::strin
     for (const auto& channel : channels) {
         if (!compare::is_figure(channel, quantity)) continue;
         const std::string owner = channel.name.substr(0, channel.name.rfind('.'));
-        const auto of = wheel_of(owner, wheels);
-        add(channel.name, wheels[of ? of->second : 0], !of);
-        outputs.back().element = of ? of->first : as_words(owner);
+        const auto found = wheel_of(owner, wheels);
+        add(channel.name, wheels[found ? found->second : 0], !found);
+        outputs.back().element = found ? found->first : as_words(owner);
     }
     return outputs;
 }

@@ -96,7 +96,7 @@ std::optional<Section> springs_section(const SceneAnalyses& scene) {
              .title = "Force of springs and stops",
              .x = "wheel travel [mm]",
              .y = {"force [N]"},
-             .rings = {marks.of}},
+             .rings = {marks.legend}},
             curves,
             fmt::format("Force of springs and stops over wheel travel, {}, by the full solution at "
                         "its stations.",

@@ -32,7 +32,7 @@ std::string turning_circle(const SceneAnalyses& scene, const Case& c) {
     return fmt::format("{}\u00a0m", number(2e-3 * wheelbase_mm / std::sin(angle * M_PI / 180)));
 }
 
-// Outputs of a scene without wheels, of those that the parameter moves.
+// The main outputs of a scene without wheels, and the efforts of what the parameter drives.
 std::vector<Quantity> all_outputs(const SceneAnalyses& scene, const std::vector<Case>& cases) {
     std::vector<Quantity> quantities;
     const auto& channels = scene.comparison.channels;
