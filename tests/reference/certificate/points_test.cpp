@@ -72,7 +72,9 @@ TEST(Certificate, KnownBoxProvesTheStatesOfOtherLegsAndExcludesWrongOnes) {
                 EXPECT_EQ(known.size(), 1u) << where;
                 ASSERT_EQ(c.state, ProofState::proved) << where;
                 EXPECT_NEAR(c.error.length, alone.error.length, 1e-12) << where;
-                EXPECT_NEAR(c.unique.length, alone.unique.length, 1e-6) << where;
+                // the search for the box without another equilibrium ends when within 0.85 of the
+                // largest, from each centre at another size
+                EXPECT_NEAR(c.unique.length / alone.unique.length, 1, 0.25) << where;
                 EXPECT_EQ(c.stable, alone.stable) << where;
                 state.poses[0].r.x() += 1e-6;
                 const Certificate wrong = certify(walk.model, walk.branch, state, {}, known);
