@@ -5,12 +5,11 @@ import os
 import warnings
 
 import numpy as np
-import pandas
 
 from elastocheck import Result, _core
 from elastocheck.study.design import Design
 from elastocheck.study.ledger import OUTCOMES
-from elastocheck.study.statistics import figure_row, independent, sobol_rows, witness_row
+from elastocheck.study.statistics import figure_row, independent, sobol_rows, squared_correlation, witness_row
 
 # How readers see the columns of tables; other columns are in the JSON only.
 _DIGITS = {column: digits for digits, columns in {
@@ -79,8 +78,9 @@ class Report(Result):
         # Some independent variants.
         bases = count // study.block
         k = np.sort(np.random.default_rng(study.seed).choice(bases, min(400, bases), replace=False)) * study.block
-        sample = pandas.DataFrame([design.values(i, i + 1)[0] for i in k], columns=map(heading, study.variables))
-        varied, reasons, charts = sample.set_axis(study.names, axis=1), [], []
+        draws = np.reshape([design.values(i, i + 1)[0] for i in k], (len(k), len(study.names)))
+        varied = dict(zip(study.names, draws.T))
+        sample, reasons, charts = dict(zip(map(heading, study.variables), varied.values())), [], []
         nominal = study.solver.solve(study.numbers(study.nominal), "series", 1)[0][0]
         for j, figure in enumerate(study.figures):
             def chart(kind, title, table, x, y, axis="", marks=(), only=figure.name):
@@ -107,12 +107,12 @@ class Report(Result):
                 rank = {row["variable"]: row["total"] for row in shares}
                 chart("ranked", "Shares of the variance", "sobol", "variable", ["total", "total from", "total to"], "total Sobol index")
             else:
-                rank = (varied.corrwith(sample[heading(figure)].where(np.isfinite)) ** 2).fillna(0)
+                rank = {name: squared_correlation(x, values[k]) for name, x in varied.items()}
                 rows["correlations"] += [{"figure": figure.name, "variable": name, "squared": x} for name, x in rank.items()]
                 chart("ranked", "Squared correlation", "correlations", "variable", ["squared"], "squared correlation")
             for name in sorted(study.names, key=rank.get, reverse=True)[:3]:
-                chart("points", "Over " + name, "sample", sample.columns[study.names.index(name)], [heading(figure)])
-        rows["sample"] = sample.to_dict("records")
+                chart("points", "Over " + name, "sample", list(sample)[study.names.index(name)], [heading(figure)])
+        rows["sample"] = [dict(zip(sample, map(float, row))) for row in zip(*sample.values())]
         return rows, reasons, charts
 
     def frame(self, table="variants"):
@@ -135,6 +135,7 @@ class Report(Result):
 
 def frames(report, at_once):
     """pandas.DataFrames with a row for each variant, `at_once` variants in each."""
+    import pandas
     study, design = report.study, Design(report.study)
     figures = "".join(", f{} AS '{}'".format(j + 1, heading(f).replace("'", "''")) for j, f in enumerate(study.figures))
     for first in range(0, study.count, at_once):

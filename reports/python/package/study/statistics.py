@@ -31,6 +31,12 @@ def independent(study, values):
     return values[np.arange(len(values)) % study.block < 2] if study.indices else values
 
 
+def squared_correlation(x, y):
+    """Of the finite y with their x; 0 where either does not vary."""
+    x, y = x[np.isfinite(y)], y[np.isfinite(y)]
+    return np.corrcoef(x, y)[0, 1] ** 2 if len(y) > 1 and np.ptp(x) > 0 and np.ptp(y) > 0 else 0.0
+
+
 def figure_row(study, figure, values, design):
     """The row of a figure: `values` in the order of the variants from 0, nan where there is none; `design`: of the scene."""
     drawn = independent(study, values)
