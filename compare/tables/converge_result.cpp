@@ -62,8 +62,7 @@ void add(Result& result, const Study& study, const std::vector<BranchAttribution
             part("convergence", table_of(where(branch_rows, &StudyRow::reading, reading)),
                  place +
                      "order at which the largest step error over the branch falls, and the "
-                     "formulation "
-                     "gap, which no step count removes");
+                     "formulation gap, which no step count removes");
             part("",
                  over_steps(where(levels, &StepRow::reading, reading), true, &StepRow::largest, ""),
                  place + "step errors, largest over the branch, over the steps");

@@ -23,8 +23,8 @@ using VisitBatch =
 // branch from a = 0 to branch.to. A branch with two sides is two branches here (branch_sides() in
 // models/branch.hpp), and every part of a model is active on all its branches.
 //
-// The result of a variant is that of solve() with the method `series`, within 1e-12 of the largest coordinate
-// and of the largest force; it does not depend on the other variants. A variant that has another structure than
+// The result of a variant is that of solve() with the method `series` and options.series, within 1e-12 of the
+// largest coordinate and of the largest force; it does not depend on the other variants. A variant that has another structure than
 // the design, ends early, or comes close to the threshold of any decision of the algorithm is solved alone: its
 // path is that of solve(), with its Outcome. So a NaN in one variant is reported for that variant.
 //

@@ -266,6 +266,14 @@ def test_confidence_intervals_of_shares_and_percentiles_have_their_coverage():
     assert percentile_ranks(60, 0.01)[0] == -1 and percentile_ranks(60, 0.99)[1] == 60
 
 
+def test_squared_correlation_omits_missing_values_and_is_zero_where_nothing_varies():
+    from elastocheck.study.statistics import squared_correlation
+
+    x, nan = np.array([0.0, 1, 2, 3]), math.nan
+    for y, share in [([0, 1, 0, 1], 0.2), ([5, 3, 1, nan], 1), ([2, 2, 2, nan], 0), ([1, nan, nan, nan], 0)]:
+        assert squared_correlation(x, np.array(y, float)) == pytest.approx(share, abs=1e-15)
+
+
 # ---- A linear suspension of known variance.
 
 def test_variance_of_a_linear_suspension_equals_its_closed_form(here):

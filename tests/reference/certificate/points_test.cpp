@@ -89,6 +89,14 @@ TEST(Certificate, KnownBoxProvesTheStatesOfOtherLegsAndExcludesWrongOnes) {
     EXPECT_TRUE(none.empty());
 }
 
+TEST(Certificate, WrenchOnAnIdleMotionAboveItsLimitIsNamed) {
+    const Side strut(compile(support::scene("mcpherson")));
+    const Equilibrium state = strut.solved(0.4 * strut.branch.to);
+    const Certificate c = certify(strut.model, strut.branch, state, {.held = 0});
+    EXPECT_EQ(c.state, ProofState::open) << c.detail;
+    EXPECT_NE(c.detail.find("N·m on an idle motion"), std::string::npos) << c.detail;
+}
+
 // ---- Wrong points
 
 struct OnMcPherson : Side {
